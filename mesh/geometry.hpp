@@ -1,0 +1,68 @@
+#pragma once
+// What the mesher meshes: a topology with a shape for each of its entities. The first mesh takes
+// straight edges and the faces' interpolation triangles; a remeshing takes the old mesh's quadratic
+// lines and triangles. There is one meshing pipeline for both.
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/tessellation.hpp"
+#include "mesh/volume_mesher.hpp"
+
+namespace polyslip::mesh {
+
+/// Chain of quadratic segments from the edge's vertex 0 to vertex 1: points[2 i] are ends,
+/// points[2 i + 1] mid nodes (a straight edge: 3 points).
+struct EdgeShape {
+  std::vector<core::Vec3> points;
+};
+
+/// Six-node triangles that interpolate a face (flat ones: mid nodes at mid points); oriented as the
+/// face. Their boundary is the chain of the face's edge shapes.
+struct FaceShape {
+  std::vector<core::Vec3> points;
+  std::vector<std::array<int, 6>> triangles;
+};
+
+struct Geometry {
+  Topology topology;
+  core::Vec3 size{1, 1, 1};
+  std::vector<core::Vec3> vertices;
+  std::vector<EdgeShape> edges;
+  std::vector<FaceShape> faces;
+};
+
+Geometry geometry_of(const Tessellation& tessellation);
+/// From a (deformed) mesh of order 2.
+Geometry geometry_of(const Mesh& mesh);
+
+/// What a deck asks for in [mesh].
+struct MeshingOptions {
+  double element_size = 0.5;         ///< c_l, for grains of unit mean volume
+  double progression_factor = 2.0;   ///< p_l
+  int order = 2;
+  std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+  double mesher_timeout = 60;        ///< seconds of CPU a grain and candidate
+  int jobs = 0;                      ///< worker processes; 0: one a core
+};
+
+struct MeshingReport {
+  std::vector<int> copied_faces;     ///< faces whose old mesh was kept (section 2.3.3)
+  std::vector<std::string> faults;   ///< one line for each candidate that crashed or was invalid
+  std::vector<int> wins;             ///< [meshers] grains won by each
+  double mean_O = 0;                 ///< mean over grains of eq. (5)
+};
+
+/// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes and projections are taken in the
+/// frame scaled by `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none.
+/// Same input, same mesh, for any number of workers. Throws RecoverableError if a grain cannot be
+/// meshed, naming it.
+Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options,
+                   const core::Vec3& scale, MesherPool& pool, MeshingReport& report,
+                   const std::function<void(double fraction)>& progress = {});
+
+}  // namespace polyslip::mesh

@@ -1,0 +1,55 @@
+#pragma once
+// What one stage hands to the next: a mesh, its fields, time, strain, provenance. Held by rank 0.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/state_layout.hpp"
+#include "mesh/mesh.hpp"
+
+namespace polyslip::mesh {
+
+enum class Location { node, element, quadrature_point };
+
+struct Field {
+  std::string name;
+  Location location = Location::element;
+  int components = 1;
+  std::string unit;
+  core::Transport transport = core::Transport::not_carried;
+  std::string description;
+  /// [entities][components]; quadrature points: entity = element * quadrature_points + point.
+  std::vector<double> values;
+};
+
+/// `mesh.nodes` are the current positions (already deformed). Fields by convention:
+///   node: "displacement" (3, shape_functions, from the first mesh's positions);
+///   element: "reference_volume" (V0 of p = K ln(V/V0); reset at a remeshing), "cauchy_stress" (6,
+///   xx yy zz yz zx xy, MPa, average), "pressure" (-tr sigma / 3), "volume"; the partition;
+///   quadrature_point: each StateField of the material, by its name.
+/// Solver history (predictor, step control) travels in fields and `history` marked not_carried.
+struct Snapshot {
+  Mesh mesh;
+  int mesh_number = 0;              ///< 0 for the first mesh, +1 a remeshing
+  int quadrature_points = 4;
+  std::vector<Field> fields;
+  std::map<std::string, std::vector<double>> history;
+  double time = 0;                  ///< s
+  double strain = 0;                ///< ln(h0/h)
+  std::map<std::string, std::string> provenance;  ///< version, deck hash, seed, ...
+
+  const Field* find(const std::string& name) const {
+    for (const auto& f : fields)
+      if (f.name == name) return &f;
+    return nullptr;
+  }
+  Field* find(const std::string& name) {
+    for (auto& f : fields)
+      if (f.name == name) return &f;
+    return nullptr;
+  }
+};
+
+}  // namespace polyslip::mesh

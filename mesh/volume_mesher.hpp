@@ -1,0 +1,72 @@
+#pragma once
+// Meshing one grain's inside from its surface, by several meshers in worker processes.
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace polyslip::mesh {
+
+/// Closed surface, outward normals, no unused nodes.
+struct SurfaceMesh {
+  std::vector<core::Vec3> nodes;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// The first nodes are the surface's, bit for bit; tetrahedra positive.
+struct VolumeMesh {
+  std::vector<core::Vec3> nodes;
+  std::vector<std::array<int, 4>> tetrahedra;
+};
+
+struct GrainRequest {
+  int grain = 0;
+  SurfaceMesh surface;
+};
+
+struct GrainResult {
+  int grain = 0;
+  bool ok = false;                  ///< some mesher gave a valid mesh
+  VolumeMesh mesh;                  ///< the best by O (eq. 5), above a floor on the worst element
+  std::string mesher;               ///< the winner
+  double O = 0;
+  std::vector<std::string> faults;  ///< one line for each failed candidate: mesher, grain, why
+};
+
+struct PoolOptions {
+  std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+  double element_size = 0.5;   ///< c_l
+  double timeout = 60;         ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
+  int jobs = 0;                ///< 0: one a core
+};
+
+/// Worker processes that hold Gmsh and Netgen; the main program never links them. `start` must be
+/// called first thing in main, before MPI_Init and before memory grows: it forks a small spawner.
+class MesherPool {
+ public:
+  static std::unique_ptr<MesherPool> start(const std::string& worker_executable);
+  ~MesherPool();
+  MesherPool(const MesherPool&) = delete;
+  MesherPool& operator=(const MesherPool&) = delete;
+
+  /// Results in the order of the requests; the same for any number of jobs.
+  std::vector<GrainResult> mesh(const std::vector<GrainRequest>& requests,
+                                const PoolOptions& options);
+
+ private:
+  struct Impl;
+  explicit MesherPool(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Why `mesh` is not a mesh of `surface`'s inside: empty if it is (boundary facets identical with
+/// the surface triangles, nodes kept, volumes positive and adding up, every node used).
+std::string validate(const SurfaceMesh& surface, const VolumeMesh& mesh);
+
+/// O of eqs. (4)-(7), alpha 0.2, beta 0.1.
+double mesh_quality_O(const VolumeMesh& mesh, double element_size);
+
+}  // namespace polyslip::mesh

@@ -1,0 +1,61 @@
+#pragma once
+// The deforming polycrystal: state on every rank, one step at a time.
+
+#include <mpi.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "material/crystal_law.hpp"
+#include "mesh/snapshot.hpp"
+#include "solver/options.hpp"
+
+namespace polyslip::solver {
+
+/// One accepted step: a row of macro.csv.
+struct StepRecord {
+  double strain = 0, time = 0, step_size = 0;   ///< at the end of the step; 1, s, 1
+  std::array<double, 6> stress{};               ///< xx yy zz yz zx xy, volume average, MPa
+  double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;       ///< force of the surroundings on the body, MPa L^2
+  std::array<std::array<double, 3>, 6> face_forces{};  ///< all faces x0 ... z1
+  int newton_iterations = 0, linear_iterations = 0;    ///< of this step, cut attempts included
+  int cuts = 0;                                 ///< attempts that failed before this one
+  double min_jacobian_ratio = 1;                ///< worst element: min det J / mean det J
+};
+
+/// Collective throughout. The snapshot lives on rank 0 (others pass anything).
+class Model {
+ public:
+  /// From a snapshot with mesh and state fields (a fresh one, a remeshed one or a checkpoint).
+  /// History in the snapshot, if there, is taken up; a stored partition is used if it was made for
+  /// the same number of ranks.
+  Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+        const LoadingOptions& loading, const SolverOptions& options,
+        std::function<void(const std::string&)> log);
+  ~Model();
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  double strain() const;
+  double time() const;
+  /// One accepted step that does not pass `target_strain`. Throws RecoverableError, on every rank,
+  /// when the step falls below the smallest one; the state is then that of the last accepted step.
+  StepRecord step(double target_strain);
+  /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.
+  void drop_setup();
+  /// Mesh, state, derived fields and history on rank 0; an empty snapshot elsewhere.
+  mesh::Snapshot snapshot() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A fresh snapshot: the state of an undeformed mesh whose grains have these orientations.
+mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,
+                                const material::CrystalLaw& law);
+
+}  // namespace polyslip::solver
