@@ -28,7 +28,9 @@ struct Field {
 ///   node: "displacement" (3, shape_functions, from the first mesh's positions);
 ///   element: "reference_volume" (V0 of p = K ln(V/V0); reset at a remeshing), "cauchy_stress" (6,
 ///   xx yy zz yz zx xy, MPa, average), "pressure" (-tr sigma / 3), "volume"; the partition;
-///   quadrature_point: each StateField of the material, by its name.
+///   quadrature_point: each StateField of the material, by its name; "cauchy_stress" (6, xx yy zz
+///   yz zx xy, MPa, plain components, sample frame; reset_to_zero).
+/// Names are unique within a location only: ask with the location where both may be there.
 /// Solver history (predictor, step control) travels in fields and `history` marked not_carried.
 struct Snapshot {
   Mesh mesh;
@@ -48,6 +50,11 @@ struct Snapshot {
   Field* find(const std::string& name) {
     for (auto& f : fields)
       if (f.name == name) return &f;
+    return nullptr;
+  }
+  const Field* find(const std::string& name, Location location) const {
+    for (const auto& f : fields)
+      if (f.location == location && f.name == name) return &f;
     return nullptr;
   }
 };
