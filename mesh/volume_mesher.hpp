@@ -66,7 +66,10 @@ class MesherPool {
 /// the surface triangles, nodes kept, volumes positive and adding up, every node used).
 std::string validate(const SurfaceMesh& surface, const VolumeMesh& mesh);
 
-/// O of eqs. (4)-(7), alpha 0.2, beta 0.1.
+/// Least radius ratio of the tetrahedra (0 for none).
+double min_radius_ratio(const VolumeMesh& mesh);
+
+/// O of eqs. (4)-(7), alpha 0.2, beta 0.1; 0 without tetrahedra or with one that is flat.
 double mesh_quality_O(const VolumeMesh& mesh, double element_size);
 
 }  // namespace polyslip::mesh
