@@ -18,9 +18,9 @@ enum class Transport {
 
 /// One part of the state at a material point.
 struct StateField {
-  std::string name;        ///< "orientation", "elastic_strain", "g", "slip", "equivalent_strain"
-  int components = 1;      ///< consecutive doubles
-  std::string unit;        ///< "MPa", "1", ...
+  std::string name;    ///< "orientation", "elastic_strain", "g", "slip", "equivalent_strain"
+  int components = 1;  ///< consecutive doubles
+  std::string unit;    ///< "MPa", "1", ...
   Transport transport = Transport::element_average;
   std::string description;
 };

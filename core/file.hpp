@@ -1,0 +1,29 @@
+#pragma once
+// Files that are either whole or not there.
+
+#include <string>
+#include <string_view>
+
+namespace polyslip::core {
+
+/// Where a file is built before it gets its name: `path` + ".part", beside it.
+std::string part_path(const std::string& path);
+
+/// Makes the finished `part_path(path)` durable and gives it its name: fsync, rename, fsync of the
+/// folder. For files that a library writes (HDF5). Throws InputError with path and reason; the part
+/// is then gone and what stood at `path` before still stands.
+void publish_part(const std::string& path);
+
+/// Writes `content` to `path`, atomically, as above. A full disk is an InputError.
+void write_file(const std::string& path, std::string_view content);
+
+/// The whole file. InputError "<path>: no such file" or with the system's reason.
+std::string read_text(const std::string& path);
+
+/// Makes a folder and its parents. InputError if that is not possible.
+void make_folder(const std::string& path);
+
+/// InputError unless files can be made in `path` (tried, not guessed).
+void require_writable_folder(const std::string& path);
+
+}  // namespace polyslip::core
