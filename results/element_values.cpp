@@ -1,0 +1,164 @@
+#include "results/element_values.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <limits>
+#include <span>
+
+#include "core/error.hpp"
+#include "core/rotation.hpp"
+#include "mesh/quadrature.hpp"
+#include "mesh/shape_functions.hpp"
+
+namespace polyslip::results {
+namespace {
+
+using core::Vec3;
+using mesh::Location;
+
+constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+
+/// Positions of the ten nodes; mid nodes that a mesh of order 1 lacks lie at mid points.
+std::array<Vec3, 10> element_nodes(const mesh::Mesh& mesh, int element) {
+  std::array<Vec3, 10> x;
+  const auto& nodes = mesh.tetrahedra[element];
+  for (int i = 0; i < 4; ++i) x[i] = mesh.nodes[nodes[i]];
+  for (int e = 0; e < 6; ++e) {
+    const auto [i, j] = mesh::tetrahedron_edges[e];
+    x[4 + e] = nodes[4 + e] >= 0 ? mesh.nodes[nodes[4 + e]] : 0.5 * (x[i] + x[j]);
+  }
+  return x;
+}
+
+/// Volume and centroid: det J is cubic and x quadratic, so the 15-point rule is exact.
+void measure(const std::array<Vec3, 10>& x, double& volume, Vec3& centroid) {
+  static const auto rule = mesh::tet_quadrature_15();
+  volume = 0;
+  centroid.setZero();
+  for (const auto& point : rule) {
+    const double w =
+        point.weight * mesh::tet10_jacobian(x, mesh::tet10_gradients(point.xi)).determinant();
+    const auto n = mesh::tet10_shape(point.xi);
+    Vec3 position = Vec3::Zero();
+    for (int i = 0; i < 10; ++i) position += n[i] * x[i];
+    volume += w;
+    centroid += w * position;
+  }
+  centroid /= volume;
+}
+
+/// Share of each quadrature point in its element's value; they add up to 1.
+std::vector<double> point_weights(const std::array<Vec3, 10>& x, int points, ElementValue value) {
+  std::vector<double> w(points, 1.0 / points);
+  if (value == ElementValue::centroid || points == 1) return w;
+  static const auto rule = mesh::tet_quadrature_4();
+  double total = 0;
+  for (int p = 0; p < points; ++p) {
+    w[p] = mesh::tet10_jacobian(x, mesh::tet10_gradients(rule[p].xi)).determinant();
+    total += w[p];
+  }
+  for (double& share : w) share /= total;
+  return w;
+}
+
+/// A field of the snapshot whose size has been checked; null if there is none.
+const mesh::Field* field_of(const mesh::Snapshot& s, const char* name, Location location,
+                            int components = 0) {
+  const auto* field = s.find(name, location);
+  if (field == nullptr) return nullptr;
+  const std::size_t entities = static_cast<std::size_t>(s.mesh.element_count()) *
+                               (location == Location::quadrature_point ? s.quadrature_points : 1);
+  if ((components > 0 && field->components != components) ||
+      field->values.size() != entities * field->components)
+    throw core::InternalError(
+        fmt::format("results/element_values: field {} has {} components and {} values for {} rows",
+                    name, field->components, field->values.size(), entities));
+  return field;
+}
+
+/// Weighted values of one element, component by component.
+template <int N>
+Eigen::Matrix<double, N, 1> mean(const mesh::Field& field, int element,
+                                 std::span<const double> weights) {
+  Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero(field.components);
+  for (std::size_t p = 0; p < weights.size(); ++p) {
+    const double* v = &field.values[(element * weights.size() + p) * field.components];
+    for (int c = 0; c < field.components; ++c) sum[c] += weights[p] * v[c];
+  }
+  return sum;
+}
+
+core::Quaternion mean_quaternion(const mesh::Field& field, int element,
+                                 std::span<const double> weights) {
+  std::vector<core::Quaternion> q;
+  for (std::size_t p = 0; p < weights.size(); ++p) {
+    const double* v = &field.values[(element * weights.size() + p) * 4];
+    q.emplace_back(v[0], v[1], v[2], v[3]);
+  }
+  return core::mean_rotation(q, weights);
+}
+
+/// The linear function at the centroid, made a unit quaternion again; signs as the first point's.
+core::Quaternion centroid_quaternion(const mesh::Field& field, int element, int points) {
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+  const double* first = &field.values[static_cast<std::size_t>(element) * points * 4];
+  for (int p = 0; p < points; ++p) {
+    const Eigen::Map<const Eigen::Vector4d> q(first + 4 * p), q0(first);
+    sum += q.dot(q0) < 0 ? Eigen::Vector4d(-q) : Eigen::Vector4d(q);
+  }
+  if (!(sum.norm() > 0))
+    throw core::InternalError(
+        fmt::format("results/element_values: no mean orientation in element {}", element + 1));
+  sum.normalize();
+  return {sum[0], sum[1], sum[2], sum[3]};
+}
+
+core::Vec6 plain(const double* v) { return Eigen::Map<const core::Vec6>(v); }
+
+}  // namespace
+
+ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
+  const int n = s.mesh.element_count(), points = s.quadrature_points;
+  if (points != 4 && points != 1)
+    throw core::InternalError(
+        fmt::format("results/element_values: no rule with {} points", points));
+  const auto* orientation = field_of(s, "orientation", Location::quadrature_point, 4);
+  const auto* g = field_of(s, "g", Location::quadrature_point);
+  const auto* slip = field_of(s, "slip", Location::quadrature_point);
+  const auto* strain = field_of(s, "equivalent_strain", Location::quadrature_point, 1);
+  const auto* stress = field_of(s, "cauchy_stress", Location::quadrature_point, 6);
+  const auto* element_stress = field_of(s, "cauchy_stress", Location::element, 6);
+  const auto* pressure = field_of(s, "pressure", Location::element, 1);
+
+  ElementTable t;
+  t.volume.resize(n);
+  t.centroid.resize(n);
+  t.orientation.assign(n, {unset, unset, unset, unset});
+  t.g.assign(n, unset);
+  t.slip.assign(n, unset);
+  t.equivalent_strain.assign(n, unset);
+  t.cauchy_stress.assign(n, core::Vec6::Zero());
+  t.pressure.resize(n);
+  for (int e = 0; e < n; ++e) {
+    const auto x = element_nodes(s.mesh, e);
+    measure(x, t.volume[e], t.centroid[e]);
+    const auto w = point_weights(x, points, value);
+    if (orientation != nullptr)
+      t.orientation[e] = value == ElementValue::average
+                             ? mean_quaternion(*orientation, e, w)
+                             : centroid_quaternion(*orientation, e, points);
+    if (g != nullptr) t.g[e] = mean<Eigen::Dynamic>(*g, e, w).mean();
+    if (slip != nullptr) t.slip[e] = mean<Eigen::Dynamic>(*slip, e, w).sum();
+    if (strain != nullptr) t.equivalent_strain[e] = mean<1>(*strain, e, w)[0];
+    if (stress != nullptr)
+      t.cauchy_stress[e] = mean<6>(*stress, e, w);
+    else if (element_stress != nullptr)
+      t.cauchy_stress[e] = plain(&element_stress->values[6 * static_cast<std::size_t>(e)]);
+    t.pressure[e] = pressure != nullptr ? pressure->values[e]
+                                        : -t.cauchy_stress[e].head<3>().sum() / 3;
+  }
+  return t;
+}
+
+}  // namespace polyslip::results

@@ -1,0 +1,22 @@
+#pragma once
+// Rules of a run folder: an earlier run is never written over unless asked.
+
+#include <string>
+#include <vector>
+
+namespace polyslip::results {
+
+/// Paths, relative to the folder, of what a run wrote there (interrupted writes too), sorted. The
+/// deck itself is not among them: it may be the user's own.
+std::vector<std::string> run_files(const std::string& folder);
+
+/// Touches nothing that lasts. InputError, one line, if `folder` holds an earlier run and
+/// `overwrite` is false (the line names --overwrite), is not a folder, or it, or the folder in which
+/// it has to be made, cannot be written to.
+void check_run_folder(const std::string& folder, bool overwrite);
+
+/// `check_run_folder`, then removes what an earlier run wrote (only such files: others stay) and
+/// makes the folder with results/ and checkpoints/.
+void prepare_run_folder(const std::string& folder, bool overwrite);
+
+}  // namespace polyslip::results

@@ -1,0 +1,41 @@
+#pragma once
+// The stored states of a run folder: files, index, and the XDMF file made of the index.
+
+#include <string>
+#include <vector>
+
+#include "mesh/snapshot.hpp"
+#include "results/xdmf.hpp"
+
+namespace polyslip::results {
+
+/// Order of writing: the state's file, the index, the XDMF file; each is whole or not there. A
+/// kill in between leaves at most a file that no index names, which the next state replaces.
+class StateSeries {
+ public:
+  /// A run folder with its results/ folder; the index is read if there is one (InputError if it
+  /// cannot be understood). Touches nothing.
+  explicit StateSeries(std::string run_folder);
+
+  /// Stores the next state: results/state-<n>.h5. InputError if it cannot be written.
+  const StateRecord& store(const mesh::Snapshot& snapshot);
+  /// Keeps the first `count` states; deletes the files of later ones and of interrupted writes, and
+  /// rewrites the XDMF file. InputError if there are fewer, or one of their files is missing.
+  void keep_first(std::size_t count);
+  /// The same, keeping the states up to and including `strain` (and its far side of a remeshing).
+  void trim_after(double strain);
+
+  const std::vector<StateRecord>& states() const { return states_; }
+  std::string path(const StateRecord& state) const;
+
+ private:
+  void write_index() const;
+  std::string folder_;
+  std::vector<StateRecord> states_;
+};
+
+/// The state nearest in strain; of two at the same strain (both sides of a remeshing) the first.
+/// InputError if the run has none.
+const StateRecord& nearest_state(const StateSeries& series, double strain);
+
+}  // namespace polyslip::results
