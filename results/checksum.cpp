@@ -19,8 +19,8 @@ namespace {
 
 /// The header of a body of this length and CRC-32.
 std::string header_of(std::uint64_t length, std::uint32_t crc, int version) {
-  std::string text = fmt::format("{} {}\nbytes {}\ncrc32 {:08x}\n", state_file_type, version, length,
-                                 crc);
+  std::string text =
+      fmt::format("{} {}\nbytes {}\ncrc32 {:08x}\n", state_file_type, version, length, crc);
   text.resize(header_size, '\0');
   return text;
 }
@@ -36,8 +36,7 @@ Body measure_body(std::istream& in) {
   std::vector<char> buffer(1 << 20);
   uLong crc = crc32(0, nullptr, 0);
   while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
-    crc = crc32(crc, reinterpret_cast<const Bytef*>(buffer.data()),
-                static_cast<uInt>(in.gcount()));
+    crc = crc32(crc, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(in.gcount()));
     body.length += static_cast<std::uint64_t>(in.gcount());
   }
   body.crc = static_cast<std::uint32_t>(crc);
@@ -76,10 +75,10 @@ void verify_seal(const std::string& path) {
                   &length, &crc) != 3)
     damaged(path, "header is garbled");
   if (header == header_of(body.length, body.crc, version))
-    throw core::InputError(
-        fmt::format("{}: is of version {} of the state file, this program reads version {}; use the "
-                    "program that wrote it",
-                    path, version, state_file_version));
+    throw core::InputError(fmt::format(
+        "{}: is of version {} of the state file, this program reads version {}; use the "
+        "program that wrote it",
+        path, version, state_file_version));
   if (length != body.length)
     damaged(path, fmt::format("{} bytes after the header instead of {}", body.length, length));
   damaged(path, "checksum does not match");

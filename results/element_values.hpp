@@ -16,14 +16,14 @@ enum class ElementValue {
 /// [elements] each, in the order of the mesh. A field that the snapshot lacks is NaN, but a
 /// snapshot without stresses is free of them: zero.
 struct ElementTable {
-  std::vector<double> volume;                ///< exact for curved elements
-  std::vector<core::Vec3> centroid;          ///< of the curved volume
-  std::vector<core::Quaternion> orientation; ///< unit; the sign of the element's first point's
-  std::vector<double> g;                     ///< MPa, mean over the components of "g"
-  std::vector<double> slip;                  ///< sum over the components of "slip"
+  std::vector<double> volume;                 ///< exact for curved elements
+  std::vector<core::Vec3> centroid;           ///< of the curved volume
+  std::vector<core::Quaternion> orientation;  ///< unit; the sign of the element's first point's
+  std::vector<double> g;                      ///< MPa, mean over the components of "g"
+  std::vector<double> slip;                   ///< sum over the components of "slip"
   std::vector<double> equivalent_strain;
-  std::vector<core::Vec6> cauchy_stress;     ///< plain components xx yy zz yz zx xy, MPa
-  std::vector<double> pressure;              ///< MPa: element field "pressure", else -tr sigma / 3
+  std::vector<core::Vec6> cauchy_stress;  ///< plain components xx yy zz yz zx xy, MPa
+  std::vector<double> pressure;           ///< MPa: element field "pressure", else -tr sigma / 3
 };
 
 /// Stress: the quadrature-point field "cauchy_stress", or else the element field of that name.

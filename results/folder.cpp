@@ -69,9 +69,8 @@ std::vector<std::string> run_files(const std::string& folder) {
 void check_run_folder(const std::string& folder, bool overwrite) {
   const std::string existing = existing_folder(folder);
   if (!fs::is_directory(existing))
-    throw core::InputError(
-        fmt::format("{}: {} is a file, not a folder; give another folder with --out", folder,
-                    existing));
+    throw core::InputError(fmt::format(
+        "{}: {} is a file, not a folder; give another folder with --out", folder, existing));
   core::require_writable_folder(existing);
   for (const auto sub : {results_folder, checkpoints_folder}) {
     const std::string path = in_folder(folder, sub);

@@ -11,8 +11,8 @@ namespace polyslip::results {
 std::vector<std::string> run_files(const std::string& folder);
 
 /// Touches nothing that lasts. InputError, one line, if `folder` holds an earlier run and
-/// `overwrite` is false (the line names --overwrite), is not a folder, or it, or the folder in which
-/// it has to be made, cannot be written to.
+/// `overwrite` is false (the line names --overwrite), is not a folder, or it, or the folder in
+/// which it has to be made, cannot be written to.
 void check_run_folder(const std::string& folder, bool overwrite);
 
 /// `check_run_folder`, then removes what an earlier run wrote (only such files: others stay) and

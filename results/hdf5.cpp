@@ -85,21 +85,21 @@ Type text_type(const std::string& path) {
 Space space_of(std::span<const std::uint64_t> shape, const std::string& path) {
   if (shape.empty()) return Space(require(H5Screate(H5S_SCALAR), path, "cannot make a scalar"));
   const std::vector<hsize_t> sizes(shape.begin(), shape.end());
-  return Space(require(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), path,
-                       "cannot make a data space"));
+  return Space(require(H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr),
+                       path, "cannot make a data space"));
 }
 
 /// New dataset, groups made on the way, without time stamps: same data, same bytes.
-Dataset create(hid_t file, const std::string& name, hid_t type, hid_t space,
-               const std::string& path) {
+Dataset make_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
+                     const std::string& path) {
   const std::string what = "cannot write " + name;
   Properties link(require(H5Pcreate(H5P_LINK_CREATE), path, what));
   require(H5Pset_create_intermediate_group(link.get(), 1), path, what);
   Properties creation(require(H5Pcreate(H5P_DATASET_CREATE), path, what));
   require(H5Pset_obj_track_times(creation.get(), false), path, what);
-  return Dataset(require(H5Dcreate2(file, name.c_str(), type, space, link.get(), creation.get(),
-                                    H5P_DEFAULT),
-                         path, what));
+  return Dataset(
+      require(H5Dcreate2(file, name.c_str(), type, space, link.get(), creation.get(), H5P_DEFAULT),
+              path, what));
 }
 
 /// A text of variable length, read and freed.
@@ -142,7 +142,7 @@ void File::write(const std::string& name, Number type, std::span<const std::uint
                  const void* data) {
   const Quiet quiet;
   const Space space = space_of(shape, path_);
-  const Dataset dataset = create(file_.get(), name, file_type(type), space.get(), path_);
+  const Dataset dataset = make_dataset(file_.get(), name, file_type(type), space.get(), path_);
   for (const auto size : shape)
     if (size == 0) return;
   require(H5Dwrite(dataset.get(), memory_type(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path_,
@@ -153,7 +153,7 @@ void File::write_text(const std::string& name, const std::string& text) {
   const Quiet quiet;
   const Type type = text_type(path_);
   const Space space = space_of({}, path_);
-  const Dataset dataset = create(file_.get(), name, type.get(), space.get(), path_);
+  const Dataset dataset = make_dataset(file_.get(), name, type.get(), space.get(), path_);
   const char* start = text.c_str();
   require(H5Dwrite(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &start), path_,
           "cannot write " + name);
@@ -166,9 +166,9 @@ void File::write_attribute(const std::string& name, const std::string& attribute
   const Type type = text_type(path_);
   const Space space = space_of({}, path_);
   const Object object(require(H5Oopen(file_.get(), name.c_str(), H5P_DEFAULT), path_, what));
-  const Attribute a(require(
-      H5Acreate2(object.get(), attribute.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
-      path_, what));
+  const Attribute a(require(H5Acreate2(object.get(), attribute.c_str(), type.get(), space.get(),
+                                       H5P_DEFAULT, H5P_DEFAULT),
+                            path_, what));
   const char* start = text.c_str();
   require(H5Awrite(a.get(), type.get(), &start), path_, what);
 }
@@ -201,8 +201,8 @@ std::vector<std::string> File::names(const std::string& group) const {
     return 0;
   };
   hsize_t from = 0;
-  const Object object(require(H5Oopen(file_.get(), group.c_str(), H5P_DEFAULT), path_,
-                              "cannot open " + group));
+  const Object object(
+      require(H5Oopen(file_.get(), group.c_str(), H5P_DEFAULT), path_, "cannot open " + group));
   require(H5Literate(object.get(), H5_INDEX_NAME, H5_ITER_INC, &from, take, &all), path_,
           "cannot list " + group);
   return all;
@@ -218,8 +218,7 @@ std::vector<std::uint64_t> File::shape(const std::string& name, Number type) con
   const Space space(require(H5Dget_space(dataset.get()), path_, what));
   const int rank = require(H5Sget_simple_extent_ndims(space.get()), path_, what);
   std::vector<hsize_t> sizes(static_cast<std::size_t>(rank));
-  if (rank > 0)
-    require(H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr), path_, what);
+  if (rank > 0) require(H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr), path_, what);
   return {sizes.begin(), sizes.end()};
 }
 
@@ -249,9 +248,9 @@ std::string File::read_text(const std::string& name) const {
 std::string File::read_text_attribute(const std::string& name, const std::string& attribute) const {
   const Quiet quiet;
   const std::string what = fmt::format("cannot read {} of {}", attribute, name);
-  const Attribute a(require(H5Aopen_by_name(file_.get(), name.c_str(), attribute.c_str(),
-                                            H5P_DEFAULT, H5P_DEFAULT),
-                            path_, what));
+  const Attribute a(require(
+      H5Aopen_by_name(file_.get(), name.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      path_, what));
   const Type stored(require(H5Aget_type(a.get()), path_, what));
   if (!is_variable_text(stored.get()))
     throw core::InputError(fmt::format("{}: {} of {} is not a text", path_, attribute, name));
@@ -262,9 +261,9 @@ std::string File::read_text_attribute(const std::string& name, const std::string
 std::int32_t File::read_int_attribute(const std::string& name, const std::string& attribute) const {
   const Quiet quiet;
   const std::string what = fmt::format("cannot read {} of {}", attribute, name);
-  const Attribute a(require(H5Aopen_by_name(file_.get(), name.c_str(), attribute.c_str(),
-                                            H5P_DEFAULT, H5P_DEFAULT),
-                            path_, what));
+  const Attribute a(require(
+      H5Aopen_by_name(file_.get(), name.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+      path_, what));
   std::int32_t value = 0;
   require(H5Aread(a.get(), H5T_NATIVE_INT32, &value), path_, what);
   return value;

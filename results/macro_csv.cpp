@@ -37,8 +37,8 @@ MacroCsv MacroCsv::resume(const std::string& path, long rows) {
   for (long row = 0; row < rows; ++row) {
     const std::size_t newline = text.find('\n', end);
     if (newline == std::string::npos)
-      throw core::InputError(fmt::format("{}: has {} rows where the checkpoint needs {}; run anew",
-                                         path, row, rows));
+      throw core::InputError(
+          fmt::format("{}: has {} rows where the checkpoint needs {}; run anew", path, row, rows));
     end = newline + 1;
   }
   if (end != text.size()) core::write_file(path, std::string_view(text).substr(0, end));

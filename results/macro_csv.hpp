@@ -18,7 +18,7 @@ struct MacroRow {
   std::array<double, 6> stress{};              ///< xx yy zz yz zx xy, volume average, MPa
   double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;      ///< force of the surroundings on the body
   int newton_iterations = 0, linear_iterations = 0;
-  bool remeshed = false;                       ///< the first step after a remeshing
+  bool remeshed = false;  ///< the first step after a remeshing
 };
 
 /// Numbers in the shortest form that reads back to the same double.

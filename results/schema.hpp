@@ -82,7 +82,4 @@ class TableReader {
   std::map<std::string, std::uint64_t> sizes_;
 };
 
-/// docs/results-format.md as a whole.
-std::string results_format_page();
-
 }  // namespace polyslip::results

@@ -147,9 +147,9 @@ void write_views(TableWriter& w, const mesh::Snapshot& s) {
   w.put("elements/cauchy_stress", stress);
   w.put("elements/pressure", t.pressure);
   const auto* displacement = s.find("displacement", Location::node);
-  w.put("nodes/displacement",
-        displacement != nullptr ? displacement->values
-                                : std::vector<double>(3 * s.mesh.nodes.size(), 0.0));
+  w.put("nodes/displacement", displacement != nullptr
+                                  ? displacement->values
+                                  : std::vector<double>(3 * s.mesh.nodes.size(), 0.0));
 }
 
 void require_name(const std::string& name) {
@@ -204,8 +204,7 @@ std::vector<std::vector<int>> lists_of(const Ints& starts, const Ints& flat,
                                        const std::string& path) {
   std::vector<std::vector<int>> lists;
   for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-    if (starts[i] < 0 || starts[i] > starts[i + 1] ||
-        starts[i + 1] > static_cast<int>(flat.size()))
+    if (starts[i] < 0 || starts[i] > starts[i + 1] || starts[i + 1] > static_cast<int>(flat.size()))
       throw core::InputError(path + ": lists of the topology do not fit together");
     lists.emplace_back(flat.begin() + starts[i], flat.begin() + starts[i + 1]);
   }

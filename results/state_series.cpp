@@ -20,8 +20,9 @@ using Json = nlohmann::ordered_json;
 constexpr const char* index_schema = "polyslip-index/1";
 
 Json to_json(const StateRecord& s) {
-  return {{"file", s.file},   {"strain", s.strain}, {"time", s.time},        {"mesh", s.mesh_number},
-          {"order", s.order}, {"nodes", s.nodes},   {"elements", s.elements}};
+  return {{"file", s.file},        {"strain", s.strain}, {"time", s.time},
+          {"mesh", s.mesh_number}, {"order", s.order},   {"nodes", s.nodes},
+          {"elements", s.elements}};
 }
 
 StateRecord from_json(const Json& j) {
@@ -116,8 +117,7 @@ void StateSeries::trim_after(double strain) {
 const StateRecord& nearest_state(const StateSeries& series, double strain) {
   const StateRecord* nearest = nullptr;
   for (const auto& state : series.states())
-    if (nearest == nullptr ||
-        std::abs(state.strain - strain) < std::abs(nearest->strain - strain))
+    if (nearest == nullptr || std::abs(state.strain - strain) < std::abs(nearest->strain - strain))
       nearest = &state;
   if (nearest == nullptr) throw core::InputError("the run has stored no state yet");
   return *nearest;

@@ -14,8 +14,8 @@ struct RemeshingSummary {
   double strain = 0;
   long elements_before = 0, elements_after = 0;
   double min_radius_ratio_before = 0, min_radius_ratio_after = 0;
-  double max_grain_volume_change = 0;       ///< relative
-  std::optional<double> strain_to_reload;   ///< until the stress is back at the curve before
+  double max_grain_volume_change = 0;      ///< relative
+  std::optional<double> strain_to_reload;  ///< until the stress is back at the curve before
 };
 
 /// What is not set does not apply (a meshing has no final strain) and is left out.
@@ -28,7 +28,7 @@ struct Summary {
   std::optional<std::vector<RemeshingSummary>> remeshings;
   std::optional<std::array<std::array<double, 3>, 3>> stress_final_mpa;  ///< volume average
   std::optional<double> min_radius_ratio, mean_radius_ratio;
-  std::map<std::string, double> cpu_s;   ///< by stage, all ranks and workers
+  std::map<std::string, double> cpu_s;  ///< by stage, all ranks and workers
   std::optional<double> wall_s;
   std::optional<double> peak_rss_mb;
   std::string version;

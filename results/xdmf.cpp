@@ -35,8 +35,8 @@ constexpr Attribute attributes[] = {
 
 std::string data_item(const StateRecord& s, const std::string& dataset, long rows, int columns,
                       const char* number) {
-  const std::string size = columns == 1 ? fmt::format("{}", rows)
-                                        : fmt::format("{} {}", rows, columns);
+  const std::string size =
+      columns == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, columns);
   return fmt::format(
       "<DataItem Format=\"HDF\" Dimensions=\"{}\" NumberType=\"{}\">{}/{}:/{}</DataItem>", size,
       number, results_folder, s.file, dataset);

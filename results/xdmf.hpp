@@ -8,9 +8,9 @@ namespace polyslip::results {
 
 /// What the index knows of a stored state.
 struct StateRecord {
-  std::string file;      ///< name in results/
-  double strain = 0;     ///< ln(h0/h)
-  double time = 0;       ///< s
+  std::string file;   ///< name in results/
+  double strain = 0;  ///< ln(h0/h)
+  double time = 0;    ///< s
   int mesh_number = 0;
   int order = 2;
   long nodes = 0, elements = 0;
