@@ -1,0 +1,116 @@
+#include "mesh/tessellation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "mesh/face_fan.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+[[noreturn]] void fail(const std::string& what) {
+  throw core::InternalError("tessellation: " + what);
+}
+
+std::vector<Vec3> face_loop(const Tessellation& t, int face) {
+  std::vector<Vec3> loop;
+  for (const int v : t.topology.face_vertices(face)) loop.push_back(t.vertices[v]);
+  return loop;
+}
+
+void check_sizes(const Tessellation& t) {
+  const auto faces = t.topology.faces.size();
+  if (t.vertices.size() != static_cast<std::size_t>(t.topology.vertex_count) ||
+      t.seeds.size() != t.topology.cell_faces.size() || t.face_planes.size() != faces ||
+      t.face_masters.size() != faces)
+    fail(fmt::format("{} vertices of {}, {} seeds of {}, {} planes and {} master points of {}",
+                     t.vertices.size(), t.topology.vertex_count, t.seeds.size(),
+                     t.topology.cell_faces.size(), t.face_planes.size(), t.face_masters.size(),
+                     faces));
+  if (!(t.size.minCoeff() > 0)) fail("box without volume");
+}
+
+void check_vertices(const Tessellation& t) {
+  for (std::size_t i = 0; i < t.vertices.size(); ++i) {
+    const Vec3& x = t.vertices[i];
+    if (!x.allFinite() || !(x.minCoeff() >= 0) || !((t.size - x).minCoeff() >= 0))
+      fail(fmt::format("vertex {} at ({}, {}, {}) is outside the box", i, x.x(), x.y(), x.z()));
+  }
+  for (const auto& e : t.topology.edges)
+    if (!((t.vertices[e.vertices[0]] - t.vertices[e.vertices[1]]).norm() > 0))
+      fail(fmt::format("vertices {} and {} coincide", e.vertices[0], e.vertices[1]));
+}
+
+void check_face(const Tessellation& t, int f) {
+  const auto& face = t.topology.faces[f];
+  const auto loop = face_loop(t, f);
+  if (loop.size() < 3) fail(fmt::format("face {} has {} edges", f, loop.size()));
+  const int master = t.face_masters[f];
+  if (master < -1 || master >= static_cast<int>(loop.size()))
+    fail(fmt::format("face {} has master point {} of {}", f, master, loop.size()));
+  if (!(std::abs(t.face_planes[f].normal.norm() - 1) < 1e-12) ||
+      !std::isfinite(t.face_planes[f].offset))
+    fail(fmt::format("face {} has no plane", f));
+  if (face.domain_face >= 0) {
+    const int axis = face.domain_face / 2;
+    const double plane = face.domain_face % 2 ? t.size[axis] : 0.0;
+    for (const Vec3& x : loop)
+      if (x[axis] != plane)
+        fail(fmt::format("face {} leaves the domain face {}", f, box_face_names[face.domain_face]));
+  }
+  if (!unfolded_in_projection(loop, master)) fail(fmt::format("face {} is folded", f));
+}
+
+}  // namespace
+
+Vec3 box_size(const PolycrystalOptions& options) {
+  if (options.grains < 1)
+    throw core::InputError(fmt::format("grains = {}: must be at least 1", options.grains));
+  const Vec3& d = options.domain;
+  if (!d.allFinite() || !(d.minCoeff() > 0))
+    throw core::InputError(
+        fmt::format("domain = [{}, {}, {}]: lengths must be positive", d.x(), d.y(), d.z()));
+  return d * std::cbrt(options.grains / d.prod());
+}
+
+double flatness_fault(const Tessellation& tessellation, int face) {
+  return degrees_of_chord(
+      fan_fault(face_loop(tessellation, face), tessellation.face_masters[face]));
+}
+
+double cell_volume(const Tessellation& tessellation, int cell) {
+  const auto& t = tessellation.topology;
+  // The origin of the sum lies near the cell, so that large boxes cost no digits.
+  const Vec3& origin = tessellation.seeds[cell];
+  double volume = 0;
+  for (const int f : t.cell_faces[cell]) {
+    double part = 0;
+    for_each_fan_triangle(face_loop(tessellation, f), tessellation.face_masters[f],
+                          [&](const Vec3& a, const Vec3& b, const Vec3& m) {
+                            part += (a - origin).dot((b - origin).cross(m - origin));
+                          });
+    volume += t.faces[f].cells[0] == cell ? part : -part;
+  }
+  return volume / 6;
+}
+
+void Tessellation::check() const {
+  topology.check();
+  check_sizes(*this);
+  check_vertices(*this);
+  for (int f = 0; f < static_cast<int>(topology.faces.size()); ++f) check_face(*this, f);
+  double total = 0;
+  for (int c = 0; c < topology.cell_count(); ++c) {
+    const double volume = cell_volume(*this, c);
+    if (!(volume > 0)) fail(fmt::format("cell {} has volume {}", c, volume));
+    total += volume;
+  }
+  if (!(std::abs(total - size.prod()) <= 1e-11 * size.prod()))
+    fail(fmt::format("cells add up to {} in a box of {}", total, size.prod()));
+}
+
+}  // namespace polyslip::mesh

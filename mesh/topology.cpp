@@ -1,0 +1,160 @@
+#include "mesh/topology.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+[[noreturn]] void fail(const std::string& what) { throw core::InternalError("topology: " + what); }
+
+int count(std::size_t n) { return static_cast<int>(n); }
+
+bool in_range(int id, int n) { return id >= 0 && id < n; }
+
+int start_of(const Topology& t, const TopologyFace& face, std::size_t i) {
+  return t.edges[face.edges[i]].vertices[face.forward[i] ? 0 : 1];
+}
+
+int end_of(const Topology& t, const TopologyFace& face, std::size_t i) {
+  return t.edges[face.edges[i]].vertices[face.forward[i] ? 1 : 0];
+}
+
+void check_edges(const Topology& t) {
+  for (int e = 0; e < count(t.edges.size()); ++e) {
+    const auto& [a, b] = t.edges[e].vertices;
+    if (!in_range(a, t.vertex_count) || !in_range(b, t.vertex_count))
+      fail(fmt::format("edge {} has vertices {} and {} of {}", e, a, b, t.vertex_count));
+    if (a == b) fail(fmt::format("edge {} has identical ends {}", e, a));
+  }
+}
+
+void check_loop(const Topology& t, int f) {
+  const auto& face = t.faces[f];
+  const std::size_t n = face.edges.size();
+  if (n < 2) fail(fmt::format("face {} has {} edges", f, n));
+  if (face.forward.size() != n)
+    fail(fmt::format("face {} has {} edges and {} directions", f, n, face.forward.size()));
+  for (const int e : face.edges)
+    if (!in_range(e, count(t.edges.size())))
+      fail(fmt::format("face {} has edge {} of {}", f, e, t.edges.size()));
+  std::vector<int> vertices;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (end_of(t, face, i) != start_of(t, face, (i + 1) % n))
+      fail(fmt::format("loop of face {} is open after edge {}", f, face.edges[i]));
+    vertices.push_back(start_of(t, face, i));
+  }
+  std::sort(vertices.begin(), vertices.end());
+  const auto twice = std::adjacent_find(vertices.begin(), vertices.end());
+  if (twice != vertices.end()) fail(fmt::format("face {} meets vertex {} twice", f, *twice));
+}
+
+void check_face_cells(const Topology& t, int f) {
+  const auto& face = t.faces[f];
+  const auto [inside, outside] = face.cells;
+  if (!in_range(inside, t.cell_count()) || outside >= t.cell_count() || outside < -1)
+    fail(fmt::format("face {} lies between cells {} and {} of {}", f, inside, outside,
+                     t.cell_count()));
+  if (inside == outside) fail(fmt::format("face {} has cell {} on both sides", f, inside));
+  if (face.domain_face < -1 || face.domain_face > 5)
+    fail(fmt::format("face {} has domain face {}", f, face.domain_face));
+  if ((outside == -1) != (face.domain_face >= 0))
+    fail(fmt::format("face {} has outer cell {} and domain face {}", f, outside, face.domain_face));
+}
+
+// Each side of a face must be listed by its cell, once.
+void check_cell_lists(const Topology& t) {
+  std::vector<int> listed(t.faces.size(), 0);
+  for (int c = 0; c < t.cell_count(); ++c) {
+    auto faces = t.cell_faces[c];
+    std::sort(faces.begin(), faces.end());
+    if (std::adjacent_find(faces.begin(), faces.end()) != faces.end())
+      fail(fmt::format("cell {} lists a face twice", c));
+    for (const int f : faces) {
+      if (!in_range(f, count(t.faces.size())))
+        fail(fmt::format("cell {} has face {} of {}", c, f, t.faces.size()));
+      if (t.faces[f].cells[0] != c && t.faces[f].cells[1] != c)
+        fail(fmt::format("cell {} lists face {}, which is not its own", c, f));
+      ++listed[f];
+    }
+  }
+  for (int f = 0; f < count(t.faces.size()); ++f)
+    if (listed[f] != (t.faces[f].cells[1] >= 0 ? 2 : 1))
+      fail(fmt::format("face {} is listed by {} cells", f, listed[f]));
+}
+
+// Both faces of a cell at an edge must run along it in opposite directions, seen from the cell.
+void check_cell_surface(const Topology& t, int c) {
+  struct Side {
+    int edge;
+    bool forward;
+  };
+  std::vector<Side> sides;
+  std::vector<int> vertices;
+  for (const int f : t.cell_faces[c]) {
+    const auto& face = t.faces[f];
+    const bool outwards = face.cells[0] == c;
+    for (std::size_t i = 0; i < face.edges.size(); ++i) {
+      sides.push_back({face.edges[i], face.forward[i] == outwards});
+      vertices.push_back(start_of(t, face, i));
+    }
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& p, const Side& q) { return p.edge < q.edge; });
+  for (std::size_t i = 0; i < sides.size(); i += 2) {
+    const bool pair = i + 1 < sides.size() && sides[i].edge == sides[i + 1].edge;
+    const bool triple = i + 2 < sides.size() && sides[i].edge == sides[i + 2].edge;
+    if (!pair || triple)
+      fail(fmt::format("edge {} is not in exactly two faces of cell {}", sides[i].edge, c));
+    if (sides[i].forward == sides[i + 1].forward)
+      fail(fmt::format("faces of cell {} disagree in orientation at edge {}", c, sides[i].edge));
+  }
+  std::sort(vertices.begin(), vertices.end());
+  const int v = count(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
+  const int e = count(sides.size() / 2), f = count(t.cell_faces[c].size());
+  if (v - e + f != 2)
+    fail(fmt::format("cell {} has {} vertices, {} edges, {} faces: Euler's V - E + F is {}", c, v,
+                     e, f, v - e + f));
+}
+
+void check_all_used(const Topology& t) {
+  std::vector<char> edge_used(t.edges.size(), 0), vertex_used(t.vertex_count, 0);
+  for (const auto& face : t.faces)
+    for (const int e : face.edges) {
+      edge_used[e] = 1;
+      for (const int v : t.edges[e].vertices) vertex_used[v] = 1;
+    }
+  const auto edge = std::find(edge_used.begin(), edge_used.end(), 0);
+  if (edge != edge_used.end()) fail(fmt::format("edge {} is unused", edge - edge_used.begin()));
+  const auto vertex = std::find(vertex_used.begin(), vertex_used.end(), 0);
+  if (vertex != vertex_used.end())
+    fail(fmt::format("vertex {} is unused", vertex - vertex_used.begin()));
+}
+
+}  // namespace
+
+std::vector<int> Topology::face_vertices(int face) const {
+  std::vector<int> vertices;
+  const auto& f = faces[face];
+  vertices.reserve(f.edges.size());
+  for (std::size_t i = 0; i < f.edges.size(); ++i) vertices.push_back(start_of(*this, f, i));
+  return vertices;
+}
+
+void Topology::check() const {
+  if (cell_faces.empty()) fail("no cells");
+  check_edges(*this);
+  for (int f = 0; f < count(faces.size()); ++f) {
+    check_loop(*this, f);
+    check_face_cells(*this, f);
+  }
+  check_cell_lists(*this);
+  for (int c = 0; c < cell_count(); ++c) check_cell_surface(*this, c);
+  check_all_used(*this);
+}
+
+}  // namespace polyslip::mesh

@@ -1,0 +1,303 @@
+// The conforming tessellation of a box: cells that were computed one by one are given shared
+// vertices, edges and faces. A vertex is first known by the four cells and walls that meet there;
+// where more than four meet (grids of seeds), vertices that coincide are merged.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+
+#include "core/error.hpp"
+#include "core/random.hpp"
+#include "mesh/tessellation.hpp"
+#include "mesh/voronoi_cells.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int root(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// The lower id stays the root.
+  void join(int i, int j) {
+    i = root(i), j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// Vertices of all cells in one list; vertex i of cell c is number first[c] + i.
+struct LocalVertices {
+  std::vector<int> first;
+  std::vector<Vec3> positions;
+  std::vector<unsigned> walls;  ///< bit w: on wall w
+  /// The four cells and walls that meet at a vertex, ascending; all -7 if there are more.
+  std::vector<std::array<int, 4>> keys;
+};
+
+constexpr std::array<int, 4> no_key{-7, -7, -7, -7};
+
+LocalVertices collect(const std::vector<SeparateCell>& cells) {
+  LocalVertices all;
+  for (int c = 0; c < static_cast<int>(cells.size()); ++c) {
+    const auto& cell = cells[c];
+    all.first.push_back(static_cast<int>(all.positions.size()));
+    std::vector<std::vector<int>> around(cell.vertices.size());
+    for (const auto& face : cell.faces)
+      for (const int v : face.loop) around[v].push_back(face.neighbour);
+    for (std::size_t v = 0; v < cell.vertices.size(); ++v) {
+      auto& key = around[v];
+      unsigned walls = 0;
+      for (const int neighbour : key)
+        if (neighbour < 0) walls |= 1U << wall_of_neighbour(neighbour);
+      key.push_back(c);
+      std::sort(key.begin(), key.end());
+      all.positions.push_back(cell.vertices[v]);
+      all.walls.push_back(walls);
+      all.keys.push_back(key.size() == 4 ? std::array<int, 4>{key[0], key[1], key[2], key[3]}
+                                         : no_key);
+    }
+  }
+  return all;
+}
+
+// Seeds that are almost a grid can give one key to vertices that lie apart: those are not joined.
+void join_equal_keys(const LocalVertices& all, double apart, UnionFind& sets) {
+  std::vector<int> order(all.keys.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int i, int j) {
+    return all.keys[i] != all.keys[j] ? all.keys[i] < all.keys[j] : i < j;
+  });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (all.keys[order[i]] != no_key && all.keys[order[i]] == all.keys[order[i - 1]] &&
+        (all.positions[order[i]] - all.positions[order[i - 1]]).norm() < apart)
+      sets.join(order[i - 1], order[i]);
+}
+
+// Sweep along a direction in which the planes of a grid do not stack up.
+void join_coincident(const LocalVertices& all, double tolerance, UnionFind& sets) {
+  const Vec3 direction = Vec3(0.5377, 0.6423, 0.5461).normalized();
+  struct Item {
+    double along;
+    int id;
+  };
+  std::vector<Item> items;
+  for (int i = 0; i < static_cast<int>(all.positions.size()); ++i)
+    if (sets.root(i) == i) items.push_back({direction.dot(all.positions[i]), i});
+  std::sort(items.begin(), items.end(), [](const Item& p, const Item& q) {
+    return p.along != q.along ? p.along < q.along : p.id < q.id;
+  });
+  for (std::size_t i = 0; i < items.size(); ++i)
+    for (std::size_t j = i + 1; j < items.size() && items[j].along - items[i].along <= tolerance;
+         ++j)
+      if ((all.positions[items[i].id] - all.positions[items[j].id]).norm() <= tolerance)
+        sets.join(items[i].id, items[j].id);
+}
+
+using Loop = std::vector<int>;
+
+void drop_repeated(Loop& loop) {
+  Loop kept;
+  for (const int v : loop)
+    if (kept.empty() || kept.back() != v) kept.push_back(v);
+  while (kept.size() > 1 && kept.front() == kept.back()) kept.pop_back();
+  loop = std::move(kept);
+}
+
+bool same_loop_reversed(const Loop& p, Loop q) {
+  if (p.size() != q.size()) return false;
+  std::reverse(q.begin(), q.end());
+  const auto start = std::find(q.begin(), q.end(), p.front());
+  std::rotate(q.begin(), start, q.end());
+  return p == q;
+}
+
+class Assembly {
+ public:
+  Assembly(const std::vector<SeparateCell>& cells, const std::vector<Vec3>& seeds, const Vec3& size)
+      : cells_(cells), all_(collect(cells)) {
+    result_.seeds = seeds;
+    result_.size = size;
+  }
+
+  /// Empty if cells do not agree on the faces between them: the tolerance was too small.
+  std::optional<Tessellation> build(double tolerance) {
+    result_.topology = {};
+    result_.vertices.clear();
+    result_.face_planes.clear();
+    result_.face_masters.clear();
+    edge_ids_.clear();
+    number_vertices(tolerance);
+    map_loops();
+    result_.topology.cell_faces.resize(cells_.size());
+    for (int c = 0; c < static_cast<int>(cells_.size()); ++c)
+      for (std::size_t i = 0; i < cells_[c].faces.size(); ++i)
+        if (!add_face(c, i)) return std::nullopt;
+    try {
+      result_.topology.check();
+    } catch (const core::InternalError&) {
+      return std::nullopt;
+    }
+    return result_;
+  }
+
+ private:
+  void number_vertices(double tolerance) {
+    const auto n = all_.positions.size();
+    UnionFind sets(n);
+    join_equal_keys(all_, 1e6 * tolerance, sets);
+    join_coincident(all_, tolerance, sets);
+    vertex_ids_.assign(n, -1);
+    for (int i = 0; i < static_cast<int>(n); ++i) {
+      const int root = sets.root(i);
+      if (root == i) {
+        vertex_ids_[i] = static_cast<int>(result_.vertices.size());
+        result_.vertices.push_back(all_.positions[i].cwiseMax(0).cwiseMin(result_.size));
+      }
+      vertex_ids_[i] = vertex_ids_[root];
+      snap(all_.walls[i], result_.vertices[vertex_ids_[i]]);
+    }
+    result_.topology.vertex_count = static_cast<int>(result_.vertices.size());
+  }
+
+  void snap(unsigned walls, Vec3& x) const {
+    for (int w = 0; w < 6; ++w)
+      if (walls >> w & 1U) x[w / 2] = w % 2 ? result_.size[w / 2] : 0.0;
+  }
+
+  void map_loops() {
+    loops_.assign(cells_.size(), {});
+    for (std::size_t c = 0; c < cells_.size(); ++c)
+      for (const auto& face : cells_[c].faces) {
+        Loop loop;
+        for (const int v : face.loop) loop.push_back(vertex_ids_[all_.first[c] + v]);
+        drop_repeated(loop);
+        if (loop.size() < 3) loop.clear();
+        loops_[c].push_back(std::move(loop));
+      }
+  }
+
+  const Loop& loop_between(int cell, int neighbour) const {
+    static const Loop none;
+    const auto& faces = cells_[cell].faces;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      if (faces[i].neighbour == neighbour) return loops_[cell][i];
+    return none;
+  }
+
+  bool add_face(int cell, std::size_t i) {
+    const Loop& loop = loops_[cell][i];
+    if (loop.empty()) return true;
+    const int neighbour = cells_[cell].faces[i].neighbour;
+    if (neighbour >= 0) {
+      if (!same_loop_reversed(loop, loop_between(neighbour, cell))) return false;
+      if (neighbour < cell) return true;  // was added from the other side
+    }
+    auto& t = result_.topology;
+    const int id = static_cast<int>(t.faces.size());
+    TopologyFace face;
+    face.cells = {cell, std::max(neighbour, -1)};
+    if (neighbour < 0) face.domain_face = wall_of_neighbour(neighbour);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const int from = loop[k], to = loop[(k + 1) % loop.size()];
+      const int edge = edge_between(from, to);
+      face.edges.push_back(edge);
+      face.forward.push_back(t.edges[edge].vertices[0] == from);
+    }
+    t.faces.push_back(std::move(face));
+    t.cell_faces[cell].push_back(id);
+    if (neighbour >= 0) t.cell_faces[neighbour].push_back(id);
+    result_.face_planes.push_back(plane_between(cell, neighbour));
+    result_.face_masters.push_back(-1);
+    return true;
+  }
+
+  int edge_between(int from, int to) {
+    const auto low = static_cast<std::uint64_t>(std::min(from, to));
+    const auto high = static_cast<std::uint64_t>(std::max(from, to));
+    auto& edges = result_.topology.edges;
+    const auto [at, added] = edge_ids_.try_emplace(low << 32U | high, edges.size());
+    if (added) edges.push_back({{from, to}});
+    return at->second;
+  }
+
+  Plane plane_between(int cell, int neighbour) const {
+    Plane plane;
+    if (neighbour < 0) {
+      const int wall = wall_of_neighbour(neighbour);
+      plane.normal = Vec3::Unit(wall / 2) * (wall % 2 ? 1.0 : -1.0);
+      plane.offset = wall % 2 ? result_.size[wall / 2] : 0.0;
+    } else {
+      const Vec3 &p = result_.seeds[cell], &q = result_.seeds[neighbour];
+      plane.normal = (q - p).normalized();
+      plane.offset = plane.normal.dot(0.5 * (p + q));
+    }
+    return plane;
+  }
+
+  const std::vector<SeparateCell>& cells_;
+  LocalVertices all_;
+  Tessellation result_;
+  std::vector<int> vertex_ids_;
+  std::vector<std::vector<Loop>> loops_;
+  std::unordered_map<std::uint64_t, int> edge_ids_;
+};
+
+std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds, const Vec3& size) {
+  const auto cells = separate_voronoi_cells(seeds, size);
+  const double cell_size = std::cbrt(size.prod() / static_cast<double>(seeds.size()));
+  Assembly assembly(cells, seeds, size);
+  for (double tolerance = 1e-10; tolerance < 1e-6; tolerance *= 10)
+    if (auto result = assembly.build(tolerance * cell_size)) return result;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Vec3& size) {
+  if (seeds.empty()) throw core::InputError("a tessellation needs at least one seed");
+  if (!size.allFinite() || !(size.minCoeff() > 0))
+    throw core::InputError(
+        fmt::format("box [{}, {}, {}]: lengths must be positive", size.x(), size.y(), size.z()));
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    if (!seeds[i].allFinite() || !(seeds[i].minCoeff() >= 0) ||
+        !((size - seeds[i]).minCoeff() >= 0))
+      throw core::InputError(fmt::format(
+          "seed {} at ({}, {}, {}) lies outside the box [{}, {}, {}]: move it inside", i + 1,
+          seeds[i].x(), seeds[i].y(), seeds[i].z(), size.x(), size.y(), size.z()));
+  if (auto result = assemble(seeds, size)) return std::move(*result);
+  // Seeds that miss a grid by about the rounding of the cells (1e-11): put them on one.
+  auto rounded = seeds;
+  const double step = 0x1.0p-27;
+  for (Vec3& x : rounded)
+    for (double& xi : x) xi = std::round(xi / step) * step;
+  for (Vec3& x : rounded) x = x.cwiseMin(size);
+  if (auto result = assemble(rounded, size)) return std::move(*result);
+  throw core::InternalError("tessellation: neighbouring cells disagree on the face between them");
+}
+
+Tessellation voronoi_tessellation(const PolycrystalOptions& options) {
+  const Vec3 size = box_size(options);
+  core::Random random(options.seed, core::Stream::seeds);
+  std::vector<Vec3> seeds;
+  for (int i = 0; i < options.grains; ++i) {
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    seeds.push_back(Vec3(x, y, z).cwiseProduct(size));
+  }
+  return voronoi_tessellation(seeds, size);
+}
+
+}  // namespace polyslip::mesh

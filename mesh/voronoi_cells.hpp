@@ -1,0 +1,29 @@
+#pragma once
+// Voronoi cells, each on its own: what the geometry library gives before cells share anything.
+
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace polyslip::mesh {
+
+/// Neighbour ids below zero are walls of the box: wall_neighbour(w) for w = x0 x1 y0 y1 z0 z1.
+constexpr int wall_neighbour(int wall) { return -1 - wall; }
+constexpr int wall_of_neighbour(int neighbour) { return -1 - neighbour; }
+
+struct SeparateFace {
+  int neighbour = 0;      ///< cell or wall on the other side
+  std::vector<int> loop;  ///< vertices of the cell, anticlockwise seen from outside
+};
+
+struct SeparateCell {
+  std::vector<core::Vec3> vertices;
+  std::vector<SeparateFace> faces;
+};
+
+/// One cell a seed, clipped by the box [0, size]. The seeds lie in the box. Throws InputError if a
+/// seed has no cell (two seeds coincide).
+std::vector<SeparateCell> separate_voronoi_cells(const std::vector<core::Vec3>& seeds,
+                                                 const core::Vec3& size);
+
+}  // namespace polyslip::mesh
