@@ -26,16 +26,16 @@ enum class PointStatus : std::uint8_t { converged = 0, not_converged = 1, not_fi
 /// Arrays of n_blocks blocks, lane innermost: array[block][component][lane].
 struct PointBlocks {
   int n_blocks = 0;
-  double time_step = 0;                 ///< s
+  double time_step = 0;                       ///< s
   const double* relative_gradient = nullptr;  ///< [9] f_ij = d x_{n+1,i} / d x_{n,j}, row-major,
                                               ///< the law uses its isochoric part det(f)^(-1/3) f
-  const double* state_old = nullptr;    ///< [layout().size()]
-  double* state_new = nullptr;          ///< [layout().size()]
-  double* stress = nullptr;             ///< [6] deviatoric Cauchy stress, Mandel order, sample
-                                        ///< frame at n+1, MPa
-  double* tangent = nullptr;            ///< [6*9] d stress_i / d h_kl, index 9 i + 3 k + l, with
-                                        ///< h = df f^-1 = d(delta u_k)/d x_{n+1,l}; may be null
-  PointStatus* status = nullptr;        ///< [1]
+  const double* state_old = nullptr;          ///< [layout().size()]
+  double* state_new = nullptr;                ///< [layout().size()]
+  double* stress = nullptr;       ///< [6] deviatoric Cauchy stress, Mandel order, sample
+                                  ///< frame at n+1, MPa
+  double* tangent = nullptr;      ///< [6*9] d stress_i / d h_kl, index 9 i + 3 k + l, with
+                                  ///< h = df f^-1 = d(delta u_k)/d x_{n+1,l}; may be null
+  PointStatus* status = nullptr;  ///< [1]
 };
 
 /// A crystal law: deviatoric response of a cubic crystal (pressure is decoupled; design page 2).
