@@ -10,6 +10,9 @@
 
 namespace polyslip::mesh {
 
+/// Names that a deck may list: Gmsh's HXT and Delaunay, Netgen; each with its optimiser and Gmsh's.
+inline const std::array<std::string, 3> known_meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+
 /// Closed surface, outward normals, no unused nodes.
 struct SurfaceMesh {
   std::vector<core::Vec3> nodes;
@@ -30,7 +33,7 @@ struct GrainRequest {
 struct GrainResult {
   int grain = 0;
   bool ok = false;                  ///< some mesher gave a valid mesh
-  VolumeMesh mesh;                  ///< the best by O (eq. 5), above a floor on the worst element
+  VolumeMesh mesh;                  ///< the best: see MesherPool::mesh
   std::string mesher;               ///< the winner
   double O = 0;
   std::vector<std::string> faults;  ///< one line for each failed candidate: mesher, grain, why
@@ -52,9 +55,20 @@ class MesherPool {
   MesherPool(const MesherPool&) = delete;
   MesherPool& operator=(const MesherPool&) = delete;
 
-  /// Results in the order of the requests; the same for any number of jobs.
+  /// Every mesher meshes every grain, and the best mesh of a grain wins: first by its worst radius
+  /// ratio as far as it is below 0.1 (in steps of 0.01), then by O (eq. 5), then by the order of the
+  /// meshers. O alone would take larger elements for a sliver.
+  ///
+  /// Results in the order of the requests; the same for any number of jobs: the requests are cut
+  /// into batches of a fixed size, each (batch, mesher) runs in a process of its own, and what is
+  /// left of a batch after a fault goes on in a new one. A grain that no mesher could mesh has `ok`
+  /// false. Throws InputError for an unknown mesher or if the worker program cannot be started,
+  /// InternalError if the pool's own process is gone.
   std::vector<GrainResult> mesh(const std::vector<GrainRequest>& requests,
                                 const PoolOptions& options);
+
+  /// CPU time of all mesher processes so far [s].
+  double cpu_seconds() const;
 
  private:
   struct Impl;

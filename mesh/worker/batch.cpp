@@ -1,0 +1,99 @@
+#include "mesh/worker/batch.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <exception>
+#include <optional>
+
+#include "mesh/mesher_protocol.hpp"
+#include "mesh/worker/fault_injection.hpp"
+#include "mesh/worker/mesher.hpp"
+
+namespace polyslip::mesh::worker {
+namespace {
+
+constexpr rlim_t max_memory = rlim_t{8} << 30;  // bytes of address space of a child
+
+/// Ends of the process: libraries are left as they are, their clean-up may crash.
+[[noreturn]] void end(bool well) { _exit(well ? 0 : 1); }
+
+std::optional<protocol::Batch> receive_batch(int socket) {
+  std::array<char, sizeof(protocol::Header)> bytes{};
+  if (!protocol::receive_all(socket, bytes.data(), bytes.size())) return std::nullopt;
+  const protocol::Header header = protocol::decode_header(bytes.data());
+  protocol::Bytes payload(header.length);
+  if (!protocol::receive_all(socket, payload.data(), payload.size())) return std::nullopt;
+  return protocol::decode_batch(payload);
+}
+
+void limit_process() {
+  rlimit limit{0, 0};
+  setrlimit(RLIMIT_CORE, &limit);
+  limit = {max_memory, max_memory};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+/// From now on, `seconds` of CPU for this process; a process that neither computes nor ends is
+/// killed by the clock, so late that a loaded machine does not come near it.
+void limit_grain(double seconds) {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const double used = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                      1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+  rlimit limit{};
+  getrlimit(RLIMIT_CPU, &limit);
+  limit.rlim_cur = static_cast<rlim_t>(std::ceil(used + seconds));
+  setrlimit(RLIMIT_CPU, &limit);
+  alarm(static_cast<unsigned>(60 + 20 * seconds));
+}
+
+/// Meshes one grain and sends it; the reason if there is no mesh.
+std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64_t index,
+                       const FaultInjection& faults, int socket) {
+  const GrainRequest& grain = batch.grains[index];
+  try {
+    faults.before(batch.mesher, grain.grain);
+    VolumeMesh mesh = mesher.fill(grain.surface, batch.element_size);
+    std::string fault = validate(grain.surface, mesh);
+    if (!fault.empty()) return fault;
+    faults.after(batch.mesher, grain.grain, mesh, socket);
+    if (!protocol::send_all(socket, protocol::encode_mesh(index, mesh))) end(false);
+    return {};
+  } catch (const std::exception& error) {
+    return std::string("exception: ") + error.what();
+  } catch (const std::string& error) {
+    return "exception: " + error;
+  } catch (...) {
+    return "exception";
+  }
+}
+
+}  // namespace
+
+void serve_batch(int socket) {
+  try {
+    limit_process();
+    const auto batch = receive_batch(socket);
+    if (!batch) end(false);
+    const auto mesher = make_mesher(batch->mesher);
+    if (!mesher) end(false);
+    const FaultInjection faults = FaultInjection::from_environment();
+    for (std::uint64_t i = 0; i < batch->grains.size(); ++i) {
+      if (!protocol::send_all(socket, protocol::encode_begin(i))) end(false);
+      limit_grain(batch->timeout);
+      const std::string fault = mesh_grain(*mesher, *batch, i, faults, socket);
+      if (!fault.empty()) {
+        // The library may be locked or half-way: the next grain gets a process of its own.
+        protocol::send_all(socket, protocol::encode_failed(i, fault));
+        end(false);
+      }
+    }
+    end(true);
+  } catch (...) {
+    end(false);
+  }
+}
+
+}  // namespace polyslip::mesh::worker

@@ -1,0 +1,33 @@
+#pragma once
+// Faults on demand, for tests of what a broken mesher costs.
+
+#include <string>
+#include <vector>
+
+#include "mesh/volume_mesher.hpp"
+
+namespace polyslip::mesh::worker {
+
+/// The environment variable POLYSLIP_MESHER_FAULT="mesher:grain:kind[,mesher:grain:kind...]" makes
+/// that mesher fail on that grain. Kinds: `crash` (segmentation fault), `hang` (an endless loop),
+/// `throw` (an exception), `nan` (a node that is not a number, unseen by the mesher process),
+/// `garbage` (an answer that is no message). An entry that cannot be read is ignored.
+class FaultInjection {
+ public:
+  static FaultInjection from_environment();
+  /// Before the mesher: crash, hang, throw.
+  void before(const std::string& mesher, int grain) const;
+  /// After the mesher's mesh was found valid: nan, garbage (written to the socket).
+  void after(const std::string& mesher, int grain, VolumeMesh& mesh, int socket) const;
+
+ private:
+  struct Entry {
+    std::string mesher;
+    int grain = 0;
+    std::string kind;
+  };
+  bool asked(const std::string& mesher, int grain, const std::string& kind) const;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace polyslip::mesh::worker
