@@ -57,6 +57,11 @@ struct Snapshot {
       if (f.location == location && f.name == name) return &f;
     return nullptr;
   }
+  Field* find(const std::string& name, Location location) {
+    for (auto& f : fields)
+      if (f.location == location && f.name == name) return &f;
+    return nullptr;
+  }
 };
 
 }  // namespace polyslip::mesh

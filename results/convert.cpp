@@ -1,0 +1,69 @@
+#include "results/convert.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.hpp"
+#include "core/file.hpp"
+#include "results/state_file.hpp"
+#include "results/state_series.hpp"
+
+namespace polyslip::results {
+namespace {
+
+void add_row(fmt::memory_buffer& text, const mesh::Mesh& mesh, const ElementTable& t, int e) {
+  const auto& x = t.centroid[e];
+  const auto& q = t.orientation[e];
+  fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", e + 1,
+                 mesh.tetrahedron_cell[e] + 1, x[0], x[1], x[2], t.volume[e], q.w(), q.x(), q.y(),
+                 q.z(), t.g[e], t.slip[e], t.equivalent_strain[e],
+                 fmt::join(t.cauchy_stress[e].begin(), t.cauchy_stress[e].end(), ","),
+                 t.pressure[e]);
+}
+
+/// Row by row, so that a large table never stands in memory as text.
+void write_table(const std::string& path, const mesh::Mesh& mesh, const ElementTable& table) {
+  constexpr std::size_t chunk = 1 << 20;
+  std::ofstream out(core::part_path(path), std::ios::binary | std::ios::trunc);
+  if (!out) throw core::InputError(path + ": cannot write; is there such a folder?");
+  fmt::memory_buffer text;
+  text.append(element_header + "\n");
+  const auto flush = [&] {
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    text.clear();
+  };
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    add_row(text, mesh, table, e);
+    if (text.size() > chunk) flush();
+  }
+  flush();
+  out.close();
+  if (!out) {
+    std::remove(core::part_path(path).c_str());
+    throw core::InputError(path + ": cannot write; is the disk full?");
+  }
+  core::publish_part(path);
+}
+
+}  // namespace
+
+StateRecord convert(const std::string& run_folder, double strain, const std::string& csv,
+                    ElementValue value) {
+  if (!std::isfinite(strain))
+    throw core::InputError(fmt::format("strain {}: give a finite number", strain));
+  const StateSeries series(run_folder);
+  if (series.states().empty())
+    throw core::InputError(run_folder +
+                           ": holds no stored state; give the folder of a run that has begun");
+  const StateRecord state = nearest_state(series, strain);
+  const auto snapshot = read_state(series.path(state));
+  write_table(csv, snapshot.mesh, element_values(snapshot, value));
+  return state;
+}
+
+}  // namespace polyslip::results
