@@ -34,6 +34,7 @@ struct Geometry {
   std::vector<core::Vec3> vertices;
   std::vector<EdgeShape> edges;
   std::vector<FaceShape> faces;
+  bool from_mesh = false;  ///< shapes are those of a mesh, so that a face's old mesh may be kept
 };
 
 Geometry geometry_of(const Tessellation& tessellation);
@@ -42,27 +43,28 @@ Geometry geometry_of(const Mesh& mesh);
 
 /// What a deck asks for in [mesh].
 struct MeshingOptions {
-  double element_size = 0.5;         ///< c_l, for grains of unit mean volume
-  double progression_factor = 2.0;   ///< p_l
+  double element_size = 0.5;        ///< c_l, for grains of unit mean volume
+  double progression_factor = 2.0;  ///< p_l
   int order = 2;
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
-  double mesher_timeout = 60;        ///< seconds of CPU a grain and candidate
-  int jobs = 0;                      ///< worker processes; 0: one a core
+  double mesher_timeout = 60;  ///< seconds of CPU a grain and candidate
+  int jobs = 0;                ///< worker processes; 0: one a core
 };
 
 struct MeshingReport {
-  std::vector<int> copied_faces;     ///< faces whose old mesh was kept (section 2.3.3)
-  std::vector<std::string> faults;   ///< one line for each candidate that crashed or was invalid
-  std::vector<int> wins;             ///< [meshers] grains won by each
-  double mean_O = 0;                 ///< mean over grains of eq. (5)
+  std::vector<int> copied_faces;    ///< faces whose old mesh was kept (section 2.3.3)
+  std::vector<std::string> faults;  ///< one line for each candidate that crashed or was invalid
+  std::vector<int> wins;            ///< [meshers] grains won by each
+  int straightened = 0;             ///< mid nodes pulled towards their chord to keep det J > 0
+  double mean_O = 0;                ///< mean over grains of eq. (5)
 };
 
 /// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes and projections are taken in the
 /// frame scaled by `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none.
 /// Same input, same mesh, for any number of workers. Throws RecoverableError if a grain cannot be
 /// meshed, naming it.
-Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options,
-                   const core::Vec3& scale, MesherPool& pool, MeshingReport& report,
+Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
+                   MesherPool& pool, MeshingReport& report,
                    const std::function<void(double fraction)>& progress = {});
 
 }  // namespace polyslip::mesh

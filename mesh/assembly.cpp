@@ -1,0 +1,222 @@
+#include "mesh/assembly.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <unordered_map>
+
+#include "core/error.hpp"
+#include "mesh/quadrature.hpp"
+#include "mesh/shape_functions.hpp"
+
+namespace polyslip::mesh {
+
+namespace {
+
+using core::Vec3;
+
+/// det J must be at least this part of the straight element's.
+constexpr double least_jacobian = 0.1;
+/// After so many halvings a mid node is put on its chord.
+constexpr int halvings = 8;
+
+/// Mid nodes by the corner nodes of their edge.
+class MidNodes {
+ public:
+  explicit MidNodes(Mesh& mesh) : mesh_(mesh) {}
+
+  void add(int a, int b, const Vec3& x) {
+    if (mesh_.order == 1) return;
+    ids_.emplace(key(a, b), mesh_.node_count());
+    mesh_.nodes.push_back(x);
+  }
+  /// -1 in a mesh of order 1.
+  int find(int a, int b) const {
+    if (mesh_.order == 1) return -1;
+    const auto it = ids_.find(key(a, b));
+    if (it == ids_.end()) throw core::InternalError("mesh assembly: an edge has no mid node");
+    return it->second;
+  }
+  /// Makes a straight one if there is none.
+  int of(int a, int b) {
+    if (mesh_.order == 1) return -1;
+    const auto [it, added] = ids_.try_emplace(key(a, b), mesh_.node_count());
+    if (added) mesh_.nodes.push_back((mesh_.nodes[a] + mesh_.nodes[b]) / 2);
+    return it->second;
+  }
+
+ private:
+  static std::uint64_t key(int a, int b) {
+    const auto [low, high] = std::minmax(a, b);
+    return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
+  }
+
+  Mesh& mesh_;
+  std::unordered_map<std::uint64_t, int> ids_;  // looked up only, never walked through
+};
+
+void add_lines(Mesh& mesh, MidNodes& mids, const BoundaryMesher& boundary,
+               const BoundaryNumbers& numbers) {
+  for (std::size_t e = 0; e < boundary.edges().size(); ++e) {
+    const auto& edge = boundary.edges()[e];
+    const int last = static_cast<int>(edge.nodes.size()) - 1;
+    const auto node = [&](int i) {
+      if (i == 0 || i == last) return mesh.topology.edges[e].vertices[i == 0 ? 0 : 1];
+      return numbers.edge_first[e] + i - 1;
+    };
+    for (int i = 0; i < last; ++i) {
+      mids.add(node(i), node(i + 1), edge.mids[i]);
+      mesh.lines.push_back({node(i), node(i + 1), mids.find(node(i), node(i + 1))});
+      mesh.line_edge.push_back(static_cast<int>(e));
+    }
+  }
+}
+
+void add_triangles(Mesh& mesh, MidNodes& mids, const BoundaryMesher& boundary,
+                   const BoundaryNumbers& numbers) {
+  for (std::size_t i = 0; i < boundary.faces().size(); ++i) {
+    const int f = static_cast<int>(i);
+    const auto& face = boundary.faces()[f];
+    const auto nodes = boundary.face_nodes(f, numbers);
+    for (const auto& e : face.inner_edges) mids.add(nodes[e.a], nodes[e.b], e.mid);
+    for (const auto& t : face.triangles) {
+      const int a = nodes[t[0]], b = nodes[t[1]], c = nodes[t[2]];
+      mesh.triangles.push_back({a, b, c, mids.find(a, b), mids.find(b, c), mids.find(c, a)});
+      mesh.triangle_face.push_back(f);
+    }
+  }
+}
+
+/// Grains' inner nodes and tetrahedra, corners only.
+void add_grains(Mesh& mesh, const BoundaryMesher& boundary, const BoundaryNumbers& numbers,
+                const std::vector<VolumeMesh>& volumes, const Vec3& scale) {
+  const auto positions = mesh.nodes;
+  for (int grain = 0; grain < mesh.topology.cell_count(); ++grain) {
+    auto ids = grain_surface(mesh.topology, boundary, numbers, positions, grain, scale).numbers;
+    const auto& volume = volumes[grain];
+    for (std::size_t i = ids.size(); i < volume.nodes.size(); ++i) {
+      ids.push_back(mesh.node_count());
+      mesh.nodes.push_back(volume.nodes[i].cwiseQuotient(scale));
+    }
+    for (const auto& t : volume.tetrahedra) {
+      std::array<int, 10> element;
+      element.fill(-1);
+      for (int i = 0; i < 4; ++i) element[i] = ids[t[i]];
+      mesh.tetrahedra.push_back(element);
+      mesh.tetrahedron_cell.push_back(grain);
+    }
+  }
+}
+
+/// Gradients where det J is looked at: quadrature points of both rules and the nodes.
+std::vector<std::array<Vec3, 10>> watched_points() {
+  std::vector<std::array<Vec3, 10>> gradients;
+  for (const auto& q : tet_quadrature_4()) gradients.push_back(tet10_gradients(q.xi));
+  for (const auto& q : tet_quadrature_15()) gradients.push_back(tet10_gradients(q.xi));
+  std::array<Vec3, 4> corners{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
+  for (const auto& c : corners) gradients.push_back(tet10_gradients(c));
+  for (const auto& [a, b] : tetrahedron_edges)
+    gradients.push_back(tet10_gradients((corners[a] + corners[b]) / 2));
+  return gradients;
+}
+
+bool is_fit(const Mesh& mesh, const std::array<int, 10>& t,
+            const std::vector<std::array<Vec3, 10>>& gradients) {
+  std::array<Vec3, 10> x;
+  for (int i = 0; i < 10; ++i) x[i] = mesh.nodes[t[i]] - mesh.nodes[t[0]];
+  const double straight = x[1].dot(x[2].cross(x[3]));
+  return std::all_of(gradients.begin(), gradients.end(), [&](const auto& g) {
+    return tet10_jacobian(x, g).determinant() >= least_jacobian * straight;
+  });
+}
+
+}  // namespace
+
+GrainSurface grain_surface(const Topology& topology, const BoundaryMesher& boundary,
+                           const BoundaryNumbers& numbers, const std::vector<Vec3>& positions,
+                           int grain, const Vec3& scale) {
+  GrainSurface surface;
+  std::unordered_map<int, int> local;  // looked up only
+  for (int f : topology.cell_faces[grain]) {
+    const bool outward = topology.faces[f].cells[0] == grain;
+    const auto nodes = boundary.face_nodes(f, numbers);
+    for (const auto& t : boundary.faces()[f].triangles) {
+      std::array<int, 3> triangle{};
+      for (int i = 0; i < 3; ++i) {
+        const int number = nodes[t[i]];
+        const auto [it, added] =
+            local.try_emplace(number, static_cast<int>(surface.numbers.size()));
+        if (added) {
+          surface.numbers.push_back(number);
+          surface.mesh.nodes.push_back(positions[number].cwiseProduct(scale));
+        }
+        triangle[i] = it->second;
+      }
+      if (!outward) std::swap(triangle[1], triangle[2]);
+      surface.mesh.triangles.push_back(triangle);
+      surface.faces.push_back(f);
+    }
+  }
+  return surface;
+}
+
+Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
+              const std::vector<VolumeMesh>& volumes, const Vec3& scale, int order) {
+  Mesh mesh;
+  mesh.order = order;
+  mesh.topology = geometry.topology;
+  mesh.size = geometry.size;
+  const auto numbers = boundary.numbers();
+  mesh.nodes = boundary.positions(numbers);
+  for (int v = 0; v < mesh.topology.vertex_count; ++v) mesh.vertex_nodes.push_back(v);
+  add_grains(mesh, boundary, numbers, volumes, scale);
+  MidNodes mids(mesh);
+  add_lines(mesh, mids, boundary, numbers);
+  add_triangles(mesh, mids, boundary, numbers);
+  for (auto& t : mesh.tetrahedra)
+    for (int e = 0; e < 6; ++e)
+      t[4 + e] = mids.of(t[tetrahedron_edges[e][0]], t[tetrahedron_edges[e][1]]);
+  return mesh;
+}
+
+int straighten_where_needed(Mesh& mesh) {
+  if (mesh.order == 1) return 0;
+  struct Bulge {
+    Vec3 middle, offset;
+    int halved = 0;
+    bool curved = false;
+  };
+  std::vector<Bulge> bulges(mesh.nodes.size());
+  const auto add = [&](int a, int b, int mid) {
+    const Vec3 middle = (mesh.nodes[a] + mesh.nodes[b]) / 2, offset = mesh.nodes[mid] - middle;
+    const bool curved = offset.norm() > 1e-12 * (mesh.nodes[b] - mesh.nodes[a]).norm();
+    bulges[mid] = {middle, offset, 0, curved};
+  };
+  for (const auto& t : mesh.triangles)
+    for (int e = 0; e < 3; ++e) add(t[triangle_edges[e][0]], t[triangle_edges[e][1]], t[3 + e]);
+  const auto is_curved = [&](const std::array<int, 10>& t) {
+    return std::any_of(t.begin() + 4, t.end(), [&](int n) { return bulges[n].curved; });
+  };
+  const auto gradients = watched_points();
+  std::vector<char> moved(mesh.nodes.size(), false);
+  while (true) {
+    std::vector<char> marked(mesh.nodes.size(), false);
+    bool any = false;
+    for (const auto& t : mesh.tetrahedra) {
+      if (!is_curved(t) || is_fit(mesh, t, gradients)) continue;
+      for (int i = 4; i < 10; ++i)
+        if (bulges[t[i]].curved) marked[t[i]] = any = true;
+    }
+    if (!any) break;
+    for (int n = 0; n < mesh.node_count(); ++n) {
+      if (!marked[n]) continue;
+      auto& b = bulges[n];
+      b.offset /= 2;
+      b.curved = ++b.halved < halvings;
+      mesh.nodes[n] = b.curved ? Vec3(b.middle + b.offset) : b.middle;
+      moved[n] = true;
+    }
+  }
+  return static_cast<int>(std::count(moved.begin(), moved.end(), true));
+}
+
+}  // namespace polyslip::mesh

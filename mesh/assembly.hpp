@@ -1,0 +1,34 @@
+#pragma once
+// A mesh made of the meshes of its vertices, edges, faces and grains.
+
+#include <vector>
+
+#include "mesh/boundary_mesh.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/volume_mesher.hpp"
+
+namespace polyslip::mesh {
+
+/// A grain's surface and the numbers (BoundaryNumbers) of its nodes.
+struct GrainSurface {
+  SurfaceMesh mesh;          ///< scaled frame, outward normals
+  std::vector<int> numbers;  ///< [mesh.nodes]
+  std::vector<int> faces;    ///< [mesh.triangles] topology face
+};
+
+/// Surface of a grain, nodes in the order of their first use.
+GrainSurface grain_surface(const Topology& topology, const BoundaryMesher& boundary,
+                           const BoundaryNumbers& numbers, const std::vector<core::Vec3>& positions,
+                           int grain, const core::Vec3& scale);
+
+/// Nodes: vertices, edges, faces, insides of grains; then, for order 2, mid nodes of lines, faces,
+/// grains. `volumes`: [grains], in the scaled frame, first nodes those of grain_surface.
+Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
+              const std::vector<VolumeMesh>& volumes, const core::Vec3& scale, int order);
+
+/// Pulls mid nodes of curved edges half-way towards their chord, again and again, wherever det J at
+/// a point of the 4- or 15-point rule or at a node of an element is less than a small part of that
+/// of the straight element. Returns the number of mid nodes moved.
+int straighten_where_needed(Mesh& mesh);
+
+}  // namespace polyslip::mesh

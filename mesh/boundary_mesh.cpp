@@ -1,0 +1,344 @@
+#include "mesh/boundary_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/error.hpp"
+#include "mesh/planar_mesher.hpp"
+#include "mesh/projection.hpp"
+#include "mesh/size_field.hpp"
+
+namespace polyslip::mesh {
+
+namespace {
+
+using core::Vec3;
+
+/// Share of its area that each part of an old face must keep in the projection.
+constexpr double least_projected_share = 0.05;
+/// A domain face is flat if its points differ by less than this, relative to the box.
+constexpr double flat = 1e-10;
+
+/// Order of positions, for looking them up.
+struct Before {
+  bool operator()(const Vec3& a, const Vec3& b) const {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  }
+};
+
+/// Edges (a < b) that belong to two triangles, with the first such triangle and its side.
+std::vector<std::array<int, 4>> inner_edges(const std::vector<std::array<int, 3>>& triangles) {
+  std::vector<std::array<int, 4>> all, inner;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const int a = triangles[t][triangle_edges[i][0]], b = triangles[t][triangle_edges[i][1]];
+      all.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), i});
+    }
+  std::sort(all.begin(), all.end());
+  for (std::size_t i = 0; i + 1 < all.size(); ++i)
+    if (all[i][0] == all[i + 1][0] && all[i][1] == all[i + 1][1]) inner.push_back(all[i]);
+  return inner;
+}
+
+}  // namespace
+
+BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& options,
+                               const Vec3& scale)
+    : geometry_(geometry),
+      options_(options),
+      scale_(scale),
+      vertices_(geometry.vertices),
+      edges_(geometry.edges.size()),
+      faces_(geometry.faces.size()),
+      edge_copied_(geometry.edges.size(), false),
+      face_copied_(geometry.faces.size(), false),
+      edge_stale_(geometry.edges.size(), true),
+      face_stale_(geometry.faces.size(), true),
+      forbidden_(geometry.faces.size()) {
+  find_planes();
+  for (const auto& shape : geometry.edges)
+    edge_lengths_.push_back(CurvedEdge(shape, scale).length());
+  vertex_sizes_ = vertex_sizes(geometry.topology, edge_lengths_, options.element_size,
+                               options.progression_factor);
+}
+
+void BoundaryMesher::find_planes() {
+  const auto& topology = geometry_.topology;
+  vertex_planes_.assign(topology.vertex_count, 0);
+  edge_planes_.assign(topology.edges.size(), 0);
+  for (int plane = 0; plane < 6; ++plane) {
+    const int axis = plane / 2;
+    double low = 0, high = 0;
+    bool any = false;
+    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+      if (topology.faces[f].domain_face != plane) continue;
+      for (const auto& x : geometry_.faces[f].points) {
+        low = any ? std::min(low, x[axis]) : x[axis];
+        high = any ? std::max(high, x[axis]) : x[axis];
+        any = true;
+      }
+    }
+    // Of the values that rounding gives: the side of the undeformed box if it is among them.
+    const double side = plane % 2 == 0 ? 0.0 : geometry_.size[axis];
+    if (any && high - low <= flat * geometry_.size[axis])
+      planes_[plane] = low <= side && side <= high ? side : low;
+  }
+  for (const auto& face : topology.faces) {
+    if (face.domain_face < 0) continue;
+    for (int e : face.edges) {
+      edge_planes_[e] |= 1u << face.domain_face;
+      for (int v : topology.edges[e].vertices) vertex_planes_[v] |= 1u << face.domain_face;
+    }
+  }
+  for (int v = 0; v < topology.vertex_count; ++v) keep_in_planes(vertices_[v], vertex_planes_[v]);
+}
+
+void BoundaryMesher::keep_in_planes(Vec3& x, unsigned planes) const {
+  for (int i = 0; i < 6; ++i)
+    if ((planes >> i & 1u) && planes_[i]) x[i / 2] = *planes_[i];
+}
+
+bool BoundaryMesher::copy(int face) {
+  if (!geometry_.from_mesh || face_copied_[face]) return false;
+  face_copied_[face] = face_stale_[face] = true;
+  forbidden_[face].clear();
+  for (int e : geometry_.topology.faces[face].edges)
+    if (!edge_copied_[e]) edge_copied_[e] = edge_stale_[e] = true;
+  return true;
+}
+
+void BoundaryMesher::mesh_edge(int edge) {
+  const auto& ends = geometry_.topology.edges[edge].vertices;
+  const CurvedEdge curve(geometry_.edges[edge], scale_);
+  const auto s = edge_nodes(curve.length(), vertex_sizes_[ends[0]], vertex_sizes_[ends[1]],
+                            options_.element_size, options_.progression_factor);
+  EdgeMesh& m = edges_[edge];
+  m = {};
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    m.nodes.push_back(curve.at(s[i]));
+    if (i > 0) m.mids.push_back(curve.at((s[i - 1] + s[i]) / 2));
+  }
+}
+
+void BoundaryMesher::copy_edge(int edge) {
+  const auto& points = geometry_.edges[edge].points;
+  EdgeMesh& m = edges_[edge];
+  m = {};
+  for (std::size_t i = 0; i < points.size(); ++i)
+    (i % 2 == 0 ? m.nodes : m.mids).push_back(points[i]);
+}
+
+BoundaryNumbers BoundaryMesher::numbers() const {
+  BoundaryNumbers numbers;
+  numbers.count = geometry_.topology.vertex_count;
+  for (const auto& e : edges_) {
+    numbers.edge_first.push_back(numbers.count);
+    numbers.count += static_cast<int>(e.nodes.size()) - 2;
+  }
+  for (const auto& f : faces_) {
+    numbers.face_first.push_back(numbers.count);
+    numbers.count += static_cast<int>(f.inner_nodes.size());
+  }
+  return numbers;
+}
+
+std::vector<Vec3> BoundaryMesher::positions(const BoundaryNumbers& numbers) const {
+  std::vector<Vec3> x = vertices_;
+  x.reserve(numbers.count);
+  for (const auto& e : edges_) x.insert(x.end(), e.nodes.begin() + 1, e.nodes.end() - 1);
+  for (const auto& f : faces_) x.insert(x.end(), f.inner_nodes.begin(), f.inner_nodes.end());
+  return x;
+}
+
+std::vector<int> BoundaryMesher::face_nodes(int face, const BoundaryNumbers& numbers) const {
+  const auto& f = geometry_.topology.faces[face];
+  std::vector<int> nodes;
+  for (std::size_t i = 0; i < f.edges.size(); ++i) {
+    const int e = f.edges[i], inner = static_cast<int>(edges_[e].nodes.size()) - 2;
+    nodes.push_back(geometry_.topology.edges[e].vertices[f.forward[i] ? 0 : 1]);
+    for (int k = 0; k < inner; ++k)
+      nodes.push_back(numbers.edge_first[e] + (f.forward[i] ? k : inner - 1 - k));
+  }
+  for (std::size_t k = 0; k < faces_[face].inner_nodes.size(); ++k)
+    nodes.push_back(numbers.face_first[face] + static_cast<int>(k));
+  return nodes;
+}
+
+/// Length of the longest 1D element at each node of an edge (section 2.2.1.2), scaled frame.
+std::vector<double> BoundaryMesher::node_sizes(const BoundaryNumbers& numbers) const {
+  std::vector<double> sizes(numbers.count, 0.0);
+  for (std::size_t e = 0; e < edges_.size(); ++e) {
+    const auto& nodes = edges_[e].nodes;
+    const int last = static_cast<int>(nodes.size()) - 1;
+    const auto number = [&](int i) {
+      if (i == 0 || i == last) return geometry_.topology.edges[e].vertices[i == 0 ? 0 : 1];
+      return numbers.edge_first[e] + i - 1;
+    };
+    for (int i = 0; i < last; ++i) {
+      const double length = (nodes[i + 1] - nodes[i]).cwiseProduct(scale_).norm();
+      for (int n : {number(i), number(i + 1)}) sizes[n] = std::max(sizes[n], length);
+    }
+  }
+  return sizes;
+}
+
+bool BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
+                               const std::vector<double>& sizes, const BoundaryNumbers& numbers) {
+  const auto& shape = geometry_.faces[face];
+  const FaceProjection projection(shape, scale_);
+  if (geometry_.from_mesh && !projection.projects(least_projected_share)) return false;
+  FaceMesh& result = faces_[face];
+  result = {};
+  PlanarProblem problem;
+  problem.element_size = options_.element_size;
+  problem.progression_factor = options_.progression_factor;
+  problem.forbidden_edges = forbidden_[face];
+  for (int n : face_nodes(face, numbers)) {
+    problem.boundary.push_back(projection.project(positions[n]));
+    problem.sizes.push_back(sizes[n]);
+  }
+  PlanarMesh plane;
+  if (!mesh_polygon(problem, plane)) return false;
+  const int domain = geometry_.topology.faces[face].domain_face;
+  const auto lift = [&](const Eigen::Vector2d& p) {
+    Vec3 x = projection.lift(p);
+    if (domain >= 0) keep_in_planes(x, 1u << domain);
+    return x;
+  };
+  result.boundary_count = static_cast<int>(problem.boundary.size());
+  for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i)
+    result.inner_nodes.push_back(lift(plane.points[i]));
+  result.triangles = plane.triangles;
+  for (const auto& [a, b, t, i] : inner_edges(plane.triangles))
+    result.inner_edges.push_back({a, b, lift((plane.points[a] + plane.points[b]) / 2)});
+  return true;
+}
+
+void BoundaryMesher::copy_face_mesh(int face) {
+  const auto& shape = geometry_.faces[face];
+  const auto& f = geometry_.topology.faces[face];
+  FaceMesh& result = faces_[face];
+  result = {};
+  std::map<Vec3, int, Before> local;  // by position: shapes do not share point numbers
+  for (std::size_t i = 0; i < f.edges.size(); ++i) {
+    const auto& points = geometry_.edges[f.edges[i]].points;
+    const int last = static_cast<int>(points.size()) - 1;
+    for (int k = 0; k < last; k += 2)
+      local[points[f.forward[i] ? k : last - k]] = result.boundary_count++;
+  }
+  int count = result.boundary_count;
+  for (const auto& t : shape.triangles) {
+    std::array<int, 3> triangle{};
+    for (int i = 0; i < 3; ++i) {
+      const auto [it, added] = local.try_emplace(shape.points[t[i]], count);
+      if (added) {
+        result.inner_nodes.push_back(shape.points[t[i]]);
+        ++count;
+      }
+      triangle[i] = it->second;
+    }
+    result.triangles.push_back(triangle);
+  }
+  for (const auto& [a, b, t, i] : inner_edges(result.triangles))
+    result.inner_edges.push_back({a, b, shape.points[shape.triangles[t][3 + i]]});
+  for (auto& x : result.inner_nodes)
+    if (f.domain_face >= 0) keep_in_planes(x, 1u << f.domain_face);
+  for (auto& e : result.inner_edges)
+    if (f.domain_face >= 0) keep_in_planes(e.mid, 1u << f.domain_face);
+}
+
+/// Edges and faces that are stale, until none is: copying a face makes its neighbours stale.
+void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
+  const auto& faces = geometry_.topology.faces;
+  bool again = true;
+  while (again) {
+    again = false;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (!edge_stale_[e]) continue;
+      const int edge = static_cast<int>(e);
+      edge_copied_[e] ? copy_edge(edge) : mesh_edge(edge);
+      for (auto& x : edges_[e].nodes) keep_in_planes(x, edge_planes_[e]);
+      for (auto& x : edges_[e].mids) keep_in_planes(x, edge_planes_[e]);
+      edges_[e].nodes.front() = vertices_[geometry_.topology.edges[e].vertices[0]];
+      edges_[e].nodes.back() = vertices_[geometry_.topology.edges[e].vertices[1]];
+    }
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if (std::any_of(faces[f].edges.begin(), faces[f].edges.end(),
+                      [&](int e) { return edge_stale_[e]; })) {
+        face_stale_[f] = true;
+        forbidden_[f].clear();
+      }
+    std::fill(edge_stale_.begin(), edge_stale_.end(), false);
+    const auto numbers_now = numbers();
+    const auto x = positions(numbers_now);
+    const auto sizes = node_sizes(numbers_now);
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      if (!face_stale_[i]) continue;
+      const int f = static_cast<int>(i);
+      face_stale_[f] = false;
+      changed[f] = true;
+      if (face_copied_[f]) {
+        copy_face_mesh(f);
+      } else if (!mesh_face(f, x, sizes, numbers_now)) {
+        if (!copy(f))
+          throw core::RecoverableError(fmt::format(
+              "face {} between grains {} and {} (0: outside) does not project on a plane", f + 1,
+              faces[f].cells[0] + 1, faces[f].cells[1] + 1));
+        again = true;
+      }
+    }
+  }
+}
+
+bool BoundaryMesher::forbid_shared_edges() {
+  struct Use {
+    std::array<int, 2> nodes;
+    int rank;  ///< who may keep it: 0 a 1D element, 1 a copied face, 2 another face
+    int face;
+    std::array<int, 2> local;
+    auto operator<=>(const Use&) const = default;
+  };
+  const auto numbers_now = numbers();
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const int f = static_cast<int>(i);
+    const auto nodes = face_nodes(f, numbers_now);
+    const int n = faces_[f].boundary_count;
+    const auto add = [&](int a, int b, int rank) {
+      const auto [low, high] = std::minmax(nodes[a], nodes[b]);
+      uses.push_back({{low, high}, rank, rank == 0 ? -1 : f, {a, b}});
+    };
+    for (int k = 0; k < n; ++k) add(k, (k + 1) % n, 0);
+    for (const auto& e : faces_[f].inner_edges)
+      if (e.a < n && e.b < n) add(e.a, e.b, face_copied_[f] ? 1 : 2);
+  }
+  std::sort(uses.begin(), uses.end());
+  bool any = false;
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].nodes != uses[i - 1].nodes || uses[i].rank != 2) continue;
+    auto& list = forbidden_[uses[i].face];
+    if (std::find(list.begin(), list.end(), uses[i].local) != list.end()) continue;
+    list.push_back(uses[i].local);
+    face_stale_[uses[i].face] = any = true;
+  }
+  return any;
+}
+
+std::vector<int> BoundaryMesher::update() {
+  std::vector<char> changed(faces_.size(), false);
+  constexpr int rounds = 4;
+  mesh_faces(changed);
+  for (int i = 0; i < rounds && forbid_shared_edges(); ++i) mesh_faces(changed);
+  std::vector<int> list;
+  for (std::size_t f = 0; f < changed.size(); ++f)
+    if (changed[f]) list.push_back(static_cast<int>(f));
+  return list;
+}
+
+double BoundaryMesher::distortion(int face) const {
+  return FaceProjection(geometry_.faces[face], scale_).distortion();
+}
+
+}  // namespace polyslip::mesh

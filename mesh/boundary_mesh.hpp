@@ -1,0 +1,88 @@
+#pragma once
+// Meshes of a geometry's edges and faces (1D and 2D meshing), kept up to date while faces are
+// switched to their old mesh.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/geometry.hpp"
+
+namespace polyslip::mesh {
+
+struct EdgeMesh {
+  std::vector<core::Vec3> nodes;  ///< from vertex 0 to vertex 1, both included
+  std::vector<core::Vec3> mids;   ///< one an element
+};
+
+/// Local node numbers: those on the boundary in the order of the face's loop, then inner ones.
+struct FaceMesh {
+  struct InnerEdge {
+    int a = 0, b = 0;  ///< a < b
+    core::Vec3 mid;
+  };
+  int boundary_count = 0;
+  std::vector<core::Vec3> inner_nodes;
+  std::vector<std::array<int, 3>> triangles;  ///< normals as the face's
+  std::vector<InnerEdge> inner_edges;         ///< sorted by (a, b)
+};
+
+/// Ids of the corner nodes: vertices, then inner nodes of edges by edge, then of faces by face.
+struct BoundaryNumbers {
+  std::vector<int> edge_first, face_first;
+  int count = 0;
+};
+
+class BoundaryMesher {
+ public:
+  /// The geometry must outlive the mesher.
+  BoundaryMesher(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale);
+
+  /// Keep a face's old mesh, and with it those of its edges, from the next update on. False if it
+  /// is kept already or the geometry has none.
+  bool copy(int face);
+  bool is_copied(int face) const { return face_copied_[face]; }
+  /// Meshes what is new or has to change and returns the faces whose mesh changed, sorted. A face
+  /// that does not project is copied; RecoverableError if it cannot be.
+  std::vector<int> update();
+
+  const std::vector<core::Vec3>& vertices() const { return vertices_; }
+  const std::vector<EdgeMesh>& edges() const { return edges_; }
+  const std::vector<FaceMesh>& faces() const { return faces_; }
+  BoundaryNumbers numbers() const;
+  /// Positions by number.
+  std::vector<core::Vec3> positions(const BoundaryNumbers& numbers) const;
+  /// Numbers of a face's local nodes.
+  std::vector<int> face_nodes(int face, const BoundaryNumbers& numbers) const;
+  /// Largest angle of a face's surface to its mean plane, radians.
+  double distortion(int face) const;
+
+ private:
+  void find_planes();
+  void keep_in_planes(core::Vec3& x, unsigned planes) const;
+  void mesh_edge(int edge);
+  void copy_edge(int edge);
+  std::vector<double> node_sizes(const BoundaryNumbers& numbers) const;
+  bool mesh_face(int face, const std::vector<core::Vec3>& positions,
+                 const std::vector<double>& sizes, const BoundaryNumbers& numbers);
+  void copy_face_mesh(int face);
+  void mesh_faces(std::vector<char>& changed);
+  /// Inner edges that join the same two nodes as another inner edge or a 1D element are forbidden;
+  /// whether there were any.
+  bool forbid_shared_edges();
+
+  const Geometry& geometry_;
+  MeshingOptions options_;
+  core::Vec3 scale_;
+  std::array<std::optional<double>, 6> planes_;  ///< coordinate of each domain face that is flat
+  std::vector<unsigned> vertex_planes_, edge_planes_;  ///< bit i: lies in domain face i
+  std::vector<core::Vec3> vertices_;
+  std::vector<double> edge_lengths_, vertex_sizes_;
+  std::vector<EdgeMesh> edges_;
+  std::vector<FaceMesh> faces_;
+  std::vector<char> edge_copied_, face_copied_, edge_stale_, face_stale_;
+  std::vector<std::vector<std::array<int, 2>>> forbidden_;  ///< [faces] local numbers
+};
+
+}  // namespace polyslip::mesh

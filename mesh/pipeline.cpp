@@ -1,0 +1,154 @@
+#include "mesh/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "mesh/assembly.hpp"
+#include "mesh/boundary_mesh.hpp"
+#include "mesh/self_intersection.hpp"
+
+namespace polyslip::mesh {
+
+namespace {
+
+using core::Vec3;
+
+/// Rounds in which faces of grains that could not be meshed are copied (section 2.3.3).
+constexpr int copy_rounds = 4;
+
+/// State of the rounds: boundary, and each grain's best mesh so far.
+class Pipeline {
+ public:
+  Pipeline(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
+           const GrainMeshers& meshers, MeshingReport& report)
+      : geometry_(geometry),
+        options_(options),
+        scale_(scale),
+        meshers_(meshers),
+        report_(report),
+        boundary_(geometry, options, scale),
+        results_(geometry.topology.cell_count()) {}
+
+  Mesh run(const std::function<void(double)>& progress) {
+    const auto tell = [&](double fraction) {
+      if (progress) progress(fraction);
+    };
+    for (int round = 0;; ++round) {
+      const auto changed = boundary_.update();
+      tell(round == 0 ? 0.1 : 0.8);
+      mesh_grains(changed);
+      const auto failed = failed_grains();
+      if (failed.empty()) break;
+      if (round == copy_rounds || !copy_faces(failed, round)) give_up(failed.front());
+    }
+    tell(0.9);
+    std::vector<VolumeMesh> volumes;
+    for (auto& r : results_) volumes.push_back(std::move(r.mesh));
+    Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
+    report_.straightened = straighten_where_needed(mesh);
+    fill_report();
+    tell(1.0);
+    return mesh;
+  }
+
+ private:
+  GrainSurface surface(int grain) const {
+    const auto numbers = boundary_.numbers();
+    return grain_surface(geometry_.topology, boundary_, numbers, boundary_.positions(numbers),
+                         grain, scale_);
+  }
+
+  void mesh_grains(const std::vector<int>& changed_faces) {
+    const auto& topology = geometry_.topology;
+    std::vector<char> stale(topology.cell_count(), false);
+    for (int f : changed_faces)
+      for (int c : topology.faces[f].cells)
+        if (c >= 0) stale[c] = true;
+    const auto numbers = boundary_.numbers();
+    const auto positions = boundary_.positions(numbers);
+    std::vector<GrainRequest> requests;
+    for (int grain = 0; grain < topology.cell_count(); ++grain)
+      if (stale[grain])
+        requests.push_back(
+            {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh});
+    auto answers = meshers_(requests);
+    if (answers.size() != requests.size())
+      throw core::InternalError(
+          fmt::format("meshing: {} grains asked for, {} got", requests.size(), answers.size()));
+    for (auto& a : answers) {
+      for (const auto& fault : a.faults) report_.faults.push_back(fault);
+      results_[a.grain] = std::move(a);
+    }
+  }
+
+  std::vector<int> failed_grains() const {
+    std::vector<int> failed;
+    for (int grain = 0; grain < static_cast<int>(results_.size()); ++grain)
+      if (!results_[grain].ok) failed.push_back(grain);
+    return failed;
+  }
+
+  /// Copies, for each failed grain, the faces at which its surface meets itself; without such, the
+  /// most distorted ones, twice as many each round, all in the last. Whether any was copied.
+  bool copy_faces(const std::vector<int>& failed, int round) {
+    bool any = false;
+    for (int grain : failed) {
+      const auto s = surface(grain);
+      bool copied = false;
+      for (int t : intersecting_triangles(s.mesh)) copied |= boundary_.copy(s.faces[t]);
+      if (!copied) {
+        std::vector<std::pair<double, int>> order;
+        for (int f : geometry_.topology.cell_faces[grain])
+          if (!boundary_.is_copied(f)) order.push_back({-boundary_.distortion(f), f});
+        std::sort(order.begin(), order.end());
+        const std::size_t count = round + 1 == copy_rounds
+                                      ? order.size()
+                                      : std::min(order.size(), std::size_t(1) << round);
+        for (std::size_t i = 0; i < count; ++i) copied |= boundary_.copy(order[i].second);
+      }
+      any |= copied;
+    }
+    return any;
+  }
+
+  [[noreturn]] void give_up(int grain) const {
+    const auto& faults = results_[grain].faults;
+    throw core::RecoverableError(fmt::format(
+        "grain {} could not be meshed by any of {} meshers{}{}", grain + 1, options_.meshers.size(),
+        faults.empty() ? "" : ": ", faults.empty() ? "" : faults.back()));
+  }
+
+  void fill_report() {
+    report_.wins.assign(options_.meshers.size(), 0);
+    report_.mean_O = 0;
+    for (const auto& r : results_) {
+      report_.mean_O += r.O / static_cast<double>(results_.size());
+      for (std::size_t i = 0; i < options_.meshers.size(); ++i)
+        report_.wins[i] += r.mesher == options_.meshers[i];
+    }
+    report_.copied_faces.clear();
+    for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f)
+      if (boundary_.is_copied(f)) report_.copied_faces.push_back(f);
+  }
+
+  const Geometry& geometry_;
+  const MeshingOptions& options_;
+  Vec3 scale_;
+  const GrainMeshers& meshers_;
+  MeshingReport& report_;
+  BoundaryMesher boundary_;
+  std::vector<GrainResult> results_;
+};
+
+}  // namespace
+
+Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
+                   const GrainMeshers& meshers, MeshingReport& report,
+                   const std::function<void(double)>& progress) {
+  report = {};
+  return Pipeline(geometry, options, scale, meshers, report).run(progress);
+}
+
+}  // namespace polyslip::mesh

@@ -1,0 +1,148 @@
+#include "mesh/size_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polyslip::mesh {
+
+using core::Vec3;
+
+namespace {
+
+/// dx/dt at t in 0 ... 1 of the quadratic segment through a (0), m (1/2), b (1).
+Vec3 tangent(const Vec3& a, const Vec3& m, const Vec3& b, double t) {
+  return (4 * t - 3) * a + (4 - 8 * t) * m + (4 * t - 1) * b;
+}
+
+/// The grading of one edge: element size h(s) = min(c_l, a0 + g s, a1 + g (L - s)), whose integral
+/// of 1/h counts elements. Elements of lengths l, l p, l p^2 ... have g = ln p and a0 = l ln p /
+/// (p - 1).
+class Grading {
+ public:
+  Grading(double length, double from, double to, double size, double p) : length_(length) {
+    growth_ = std::log(p);
+    const double first = growth_ > 1e-9 ? growth_ / (p - 1) : 1;
+    a0_ = from < size ? from * first : size;
+    a1_ = to < size ? to * first : size;
+    if (growth_ <= 1e-9) {
+      growth_ = 0;
+      size = a0_ = a1_ = std::min(a0_, a1_);
+    }
+    size_ = size;
+    if (growth_ > 0) {
+      rise_ = (size - a0_) / growth_;
+      fall_ = length - (size - a1_) / growth_;
+      if (rise_ > fall_) {
+        rise_ = std::clamp((a1_ - a0_ + growth_ * length) / (2 * growth_), 0.0, length);
+        fall_ = rise_;
+      }
+    } else {
+      rise_ = 0;
+      fall_ = length;
+    }
+    rise_count_ = count_on_ramp(a0_, rise_);
+    flat_count_ = (fall_ - rise_) / size_;
+    fall_count_ = count_on_ramp(a1_, length - fall_);
+  }
+
+  double count() const { return rise_count_ + flat_count_ + fall_count_; }
+
+  /// Where `count` elements from the start end.
+  double at(double count) const {
+    if (count < rise_count_) return on_ramp(a0_, count);
+    if (count < rise_count_ + flat_count_) return rise_ + (count - rise_count_) * size_;
+    return length_ - on_ramp(a1_, this->count() - count);
+  }
+
+ private:
+  double count_on_ramp(double start, double s) const {
+    return growth_ > 0 ? std::log1p(growth_ * s / start) / growth_ : s / start;
+  }
+  double on_ramp(double start, double count) const {
+    return growth_ > 0 ? start * std::expm1(growth_ * count) / growth_ : start * count;
+  }
+
+  double length_, size_ = 0, growth_ = 0, a0_ = 0, a1_ = 0, rise_ = 0, fall_ = 0;
+  double rise_count_ = 0, flat_count_ = 0, fall_count_ = 0;
+};
+
+bool progresses(const std::vector<double>& s, double p) {
+  for (std::size_t i = 2; i < s.size(); ++i) {
+    const double a = s[i - 1] - s[i - 2], b = s[i] - s[i - 1];
+    if (std::max(a, b) > p * std::min(a, b) * (1 + 1e-9)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+CurvedEdge::CurvedEdge(const EdgeShape& shape, const Vec3& scale)
+    : shape_(&shape), scale_(scale), ends_{0} {
+  for (int i = 0; 2 * i + 2 < static_cast<int>(shape.points.size()); ++i)
+    ends_.push_back(ends_.back() + partial_length(i, 1));
+}
+
+// Three-point Gauss quadrature of |dx/dt| on eight intervals.
+double CurvedEdge::partial_length(int segment, double t) const {
+  const Vec3 a = shape_->points[2 * segment].cwiseProduct(scale_);
+  const Vec3 m = shape_->points[2 * segment + 1].cwiseProduct(scale_);
+  const Vec3 b = shape_->points[2 * segment + 2].cwiseProduct(scale_);
+  constexpr int intervals = 8;
+  const double half = t / (2 * intervals), offset = half * std::sqrt(0.6);
+  double sum = 0;
+  for (int i = 0; i < intervals; ++i) {
+    const double middle = (2 * i + 1) * half;
+    sum += 5 * tangent(a, m, b, middle - offset).norm() + 8 * tangent(a, m, b, middle).norm() +
+           5 * tangent(a, m, b, middle + offset).norm();
+  }
+  return sum * half / 9;
+}
+
+Vec3 CurvedEdge::at(double s) const {
+  if (s <= 0) return shape_->points.front();
+  if (s >= length()) return shape_->points.back();
+  const int segment =
+      static_cast<int>(std::upper_bound(ends_.begin(), ends_.end(), s) - ends_.begin()) - 1;
+  const double wanted = s - ends_[segment], whole = ends_[segment + 1] - ends_[segment];
+  double low = 0, high = 1, t = wanted / whole;
+  const auto& x = shape_->points;
+  const Vec3 &a = x[2 * segment], &m = x[2 * segment + 1], &b = x[2 * segment + 2];
+  for (int i = 0; i < 60; ++i) {
+    const double error = partial_length(segment, t) - wanted;
+    if (std::abs(error) <= 1e-14 * whole) break;
+    (error > 0 ? high : low) = t;
+    const double speed = tangent(a, m, b, t).cwiseProduct(scale_).norm();
+    const double newton = t - error / speed;
+    t = newton > low && newton < high ? newton : (low + high) / 2;
+  }
+  return (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * m + t * (2 * t - 1) * b;
+}
+
+std::vector<double> vertex_sizes(const Topology& topology, const std::vector<double>& edge_lengths,
+                                 double element_size, double progression_factor) {
+  std::vector<double> sizes(topology.vertex_count, element_size);
+  for (std::size_t e = 0; e < topology.edges.size(); ++e)
+    for (int v : topology.edges[e].vertices)
+      sizes[v] = std::min(sizes[v], progression_factor * edge_lengths[e]);
+  return sizes;
+}
+
+// The count of elements is the one whose lengths are nearest to those asked for, in the ratio, then
+// as many more as the progression factor needs.
+std::vector<double> edge_nodes(double length, double from, double to, double element_size,
+                               double progression_factor) {
+  const Grading grading(length, from, to, element_size, progression_factor);
+  const double count = grading.count();
+  int n = std::max(1, static_cast<int>(count));
+  if (count * count > static_cast<double>(n) * (n + 1)) ++n;
+  std::vector<double> s;
+  do {
+    s.assign(n + 1, 0.0);
+    for (int i = 1; i < n; ++i) s[i] = grading.at(count * i / n);
+    s[n] = length;
+    ++n;
+  } while (!progresses(s, progression_factor) && n <= count + 3);
+  return s;
+}
+
+}  // namespace polyslip::mesh

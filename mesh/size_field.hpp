@@ -1,0 +1,41 @@
+#pragma once
+// Sizes and nodes on vertices and edges (0D and 1D meshing, sections 2.2.1.1, 2.2.1.2, 2.3.1 and
+// 2.3.2 of the paper). Lengths are those of the frame scaled component by component.
+
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/geometry.hpp"
+
+namespace polyslip::mesh {
+
+/// An edge's chain of quadratic segments, parametrised by its arc length in the scaled frame: the
+/// "equivalent straight configuration" of section 2.3.2.
+class CurvedEdge {
+ public:
+  CurvedEdge(const EdgeShape& shape, const core::Vec3& scale);
+  /// In the scaled frame.
+  double length() const { return ends_.back(); }
+  /// Point (unscaled) at arc length s, clamped to 0 ... length(); the ends are met exactly.
+  core::Vec3 at(double s) const;
+
+ private:
+  /// Length of segment i from its start to the parameter t in 0 ... 1.
+  double partial_length(int segment, double t) const;
+
+  const EdgeShape* shape_;
+  core::Vec3 scale_;
+  std::vector<double> ends_;  ///< arc length at the start of each segment, and at the end
+};
+
+/// Characteristic length of each vertex: c_l, or p_l times its shortest edge if that is shorter
+/// than c_l (and at most c_l). `edge_lengths` as of CurvedEdge::length.
+std::vector<double> vertex_sizes(const Topology& topology, const std::vector<double>& edge_lengths,
+                                 double element_size, double progression_factor);
+
+/// Arc lengths 0 ... length of the nodes of an edge whose vertices have the sizes `from` and `to`:
+/// elements grow by p_l from the vertices up to c_l; adjacent ones differ by no more than p_l.
+std::vector<double> edge_nodes(double length, double from, double to, double element_size,
+                               double progression_factor);
+
+}  // namespace polyslip::mesh

@@ -1,0 +1,302 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numeric>
+
+#include "core/error.hpp"
+#include "mesh/boundary_mesh.hpp"
+#include "mesh/pipeline.hpp"
+#include "mesh/self_intersection.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+/// Joins each surface triangle to the middle of the grain: valid if the grain is star-shaped.
+std::vector<GrainResult> star_meshes(const std::vector<GrainRequest>& requests) {
+  std::vector<GrainResult> results;
+  for (const auto& r : requests) {
+    GrainResult result{
+        .grain = r.grain, .ok = true, .mesh = {}, .mesher = "star", .O = 1, .faults = {}};
+    result.mesh.nodes = r.surface.nodes;
+    Vec3 sum = Vec3::Zero();
+    for (const auto& x : r.surface.nodes) sum += x;
+    const int middle = static_cast<int>(result.mesh.nodes.size());
+    result.mesh.nodes.push_back(sum / middle);
+    for (const auto& t : r.surface.triangles)
+      result.mesh.tetrahedra.push_back({t[0], t[2], t[1], middle});
+    const auto why = validate(r.surface, result.mesh);
+    if (!why.empty()) {
+      result.ok = false;
+      result.faults.push_back("star: " + why);
+    }
+    results.push_back(result);
+  }
+  return results;
+}
+
+MeshingOptions options_of(double element_size) {
+  MeshingOptions options;
+  options.element_size = element_size;
+  options.meshers = {"star"};
+  return options;
+}
+
+Mesh star_mesh(const Geometry& geometry, const MeshingOptions& options, MeshingReport& report,
+               const Vec3& scale = Vec3::Ones()) {
+  return mesh_geometry(geometry, options, scale, GrainMeshers(star_meshes), report);
+}
+
+/// n^3 cubes of unit volume.
+Geometry cubes(int n) {
+  std::vector<Vec3> seeds;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k) seeds.push_back(Vec3(i, j, k) + Vec3::Constant(0.5));
+  return geometry_of(voronoi_tessellation(seeds, Vec3::Constant(n)));
+}
+
+double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+/// Nodes of the flat domain faces lie on the box, bit for bit.
+void expect_box(const Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const int d = mesh.topology.faces[mesh.triangle_face[i]].domain_face;
+    if (d < 0) continue;
+    for (int n : mesh.triangles[i])
+      if (n >= 0) {
+        EXPECT_EQ(mesh.nodes[n][d / 2], d % 2 == 0 ? 0.0 : mesh.size[d / 2]);
+      }
+  }
+}
+
+/// Divergence-free motions: plane strain, and shears x_i += f(x_j) whose determinant is one.
+Vec3 deformed(const Vec3& x0, double strain, double amplitude) {
+  Vec3 x = x0;
+  x[0] += amplitude * std::sin(1.9 * x[1] + 0.3) * std::sin(2.1 * x[2]);
+  x[1] += amplitude * std::sin(2.3 * x[2] + 0.7) * std::cos(1.7 * x[0]);
+  x[2] += amplitude * std::cos(2.0 * x[0] + 0.2) * std::sin(1.8 * x[1]);
+  return x.cwiseProduct(Vec3(std::exp(strain), 1, std::exp(-strain)));
+}
+
+double largest_change(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] / b[i] - 1));
+  return worst;
+}
+
+TEST(MeshGeometry, MeshesCubesOfOneTwoAndEightCells) {
+  const auto two =
+      geometry_of(voronoi_tessellation({Vec3(0.5, 0.5, 0.5), Vec3(1.5, 0.5, 0.5)}, Vec3(2, 1, 1)));
+  for (const auto& geometry : {cubes(1), two, cubes(2)})
+    for (double size : {2.0, 0.5, 0.3})
+      for (int order : {1, 2}) {
+        MeshingReport report;
+        auto options = options_of(size);
+        options.order = order;
+        const Mesh mesh = star_mesh(geometry, options, report);
+        ASSERT_NO_THROW(check(mesh));
+        expect_box(mesh);
+        EXPECT_NEAR(sum(grain_volumes(mesh)) / mesh.size.prod(), 1, 1e-12);
+        for (double v : grain_volumes(mesh)) EXPECT_NEAR(v, 1, 1e-12);
+        EXPECT_EQ(report.wins, std::vector<int>{mesh.topology.cell_count()});
+        EXPECT_EQ(report.straightened, 0);
+        EXPECT_TRUE(report.copied_faces.empty());
+      }
+}
+
+TEST(MeshGeometry, MeshesACubeWithTheSizesOfTheScaledFrame) {
+  MeshingReport report;
+  const Mesh mesh = star_mesh(cubes(1), options_of(0.5), report, Vec3(2, 1, 0.5));
+  ASSERT_NO_THROW(check(mesh));
+  std::map<int, int> count;
+  for (std::size_t i = 0; i < mesh.lines.size(); ++i) {
+    const Vec3 d = mesh.nodes[mesh.lines[i][1]] - mesh.nodes[mesh.lines[i][0]];
+    int axis = 0;
+    d.cwiseAbs().maxCoeff(&axis);
+    ++count[axis];
+  }
+  EXPECT_EQ(count[0], 4 * 4);
+  EXPECT_EQ(count[1], 4 * 2);
+  EXPECT_EQ(count[2], 4 * 1);
+  EXPECT_NEAR(sum(grain_volumes(mesh)), 1, 1e-12);
+}
+
+TEST(MeshGeometry, MeshesAVoronoiPolycrystal) {
+  const auto tessellation = voronoi_tessellation(PolycrystalOptions{.grains = 20, .seed = 3});
+  MeshingReport report;
+  const Mesh mesh = star_mesh(geometry_of(tessellation), options_of(0.5), report);
+  ASSERT_NO_THROW(check(mesh));
+  expect_box(mesh);
+  EXPECT_NEAR(sum(grain_volumes(mesh)) / mesh.size.prod(), 1, 1e-12);
+  const auto volumes = grain_volumes(mesh);
+  for (int c = 0; c < 20; ++c) EXPECT_NEAR(volumes[c], cell_volume(tessellation, c), 1e-9);
+}
+
+TEST(MeshGeometry, GivesBackTheGeometryOfAMesh) {
+  MeshingReport report;
+  const Mesh mesh = star_mesh(cubes(2), options_of(0.5), report);
+  const Geometry g = geometry_of(mesh);
+  EXPECT_TRUE(g.from_mesh);
+  ASSERT_EQ(g.edges.size(), mesh.topology.edges.size());
+  std::size_t triangles = 0, points = 0;
+  for (const auto& f : g.faces) triangles += f.triangles.size();
+  for (const auto& e : g.edges) {
+    ASSERT_EQ(e.points.size() % 2, 1u);
+    points += (e.points.size() - 1) / 2;
+  }
+  EXPECT_EQ(triangles, mesh.triangles.size());
+  EXPECT_EQ(points, mesh.lines.size());
+  for (std::size_t e = 0; e < g.edges.size(); ++e) {
+    EXPECT_EQ(g.edges[e].points.front(), g.vertices[mesh.topology.edges[e].vertices[0]]);
+    EXPECT_EQ(g.edges[e].points.back(), g.vertices[mesh.topology.edges[e].vertices[1]]);
+  }
+  Mesh linear = mesh;
+  linear.order = 1;
+  EXPECT_THROW(geometry_of(linear), core::InternalError);
+}
+
+TEST(MeshGeometry, RemeshesOnTheOldQuadraticSurface) {
+  MeshingReport report;
+  Mesh old = star_mesh(cubes(2), options_of(0.34), report);
+  for (auto& x : old.nodes) x = deformed(x, 0.3, 0.08);
+  ASSERT_NO_THROW(check(old));
+  for (const Vec3& scale : {Vec3(1, 1, 1), Vec3(std::exp(-0.3), 1, std::exp(0.3))}) {
+    const Mesh mesh = star_mesh(geometry_of(old), options_of(0.3), report, scale);
+    ASSERT_NO_THROW(check(mesh));
+    EXPECT_TRUE(report.copied_faces.empty());
+    EXPECT_LT(largest_change(grain_volumes(mesh), grain_volumes(old)), 1e-3);
+    for (int v = 0; v < mesh.topology.vertex_count; ++v)
+      EXPECT_EQ(mesh.nodes[mesh.vertex_nodes[v]], old.nodes[old.vertex_nodes[v]]);
+  }
+}
+
+TEST(MeshGeometry, RemeshingAQuadraticMapOfFlatFacesKeepsItsVolumeAndSurface) {
+  // z += a x^2 + b x y is reproduced by quadratic triangles, whatever their size.
+  MeshingReport report;
+  Mesh old = star_mesh(cubes(1), options_of(0.5), report);
+  const auto lift = [](const Vec3& x) { return 0.2 * x[0] * x[0] + 0.1 * x[0] * x[1]; };
+  for (auto& x : old.nodes) x[2] += lift(x);
+  const Mesh mesh = star_mesh(geometry_of(old), options_of(0.31), report);
+  ASSERT_NO_THROW(check(mesh));
+  EXPECT_NEAR(sum(grain_volumes(mesh)), 1, 2e-4);
+  int looked_at = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto& face = mesh.topology.faces[mesh.triangle_face[i]];
+    if (face.domain_face != 4 && face.domain_face != 5) continue;
+    for (int n : mesh.triangles[i]) {
+      const Vec3& x = mesh.nodes[n];
+      EXPECT_NEAR(x[2] - lift(x), face.domain_face == 4 ? 0.0 : 1.0, 1e-12);
+      ++looked_at;
+    }
+  }
+  EXPECT_GT(looked_at, 100);
+}
+
+TEST(BoundaryMesher, CopiesAFaceThatDoesNotProjectAndItsEdges) {
+  MeshingReport report;
+  Geometry g = geometry_of(star_mesh(cubes(2), options_of(0.34), report));
+  const auto& faces = g.topology.faces;
+  const int folded = static_cast<int>(
+      std::find_if(faces.begin(), faces.end(), [](auto& f) { return f.domain_face < 0; }) -
+      faces.begin());
+  // What lies inside the face is dragged sideways, beyond its boundary.
+  auto& shape = g.faces[folded];
+  Vec3 low = shape.points[0], high = low;
+  for (const auto& x : shape.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  int normal = 0;
+  (high - low).minCoeff(&normal);
+  const Vec3 middle = (low + high) / 2;
+  for (auto& x : shape.points) {
+    const double r = 2 * (x - middle).cwiseAbs().maxCoeff();
+    if (r < 0.99) x[(normal + 1) % 3] += 0.9 * (1 - r);
+  }
+  const auto options = options_of(0.5);
+  BoundaryMesher mesher(g, options, Vec3::Ones());
+  EXPECT_EQ(mesher.update().size(), faces.size());
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f)
+    EXPECT_EQ(mesher.is_copied(f), f == folded) << f;
+  const auto& copy = mesher.faces()[folded];
+  EXPECT_EQ(copy.triangles.size(), shape.triangles.size());
+  EXPECT_EQ(
+      copy.boundary_count + copy.inner_nodes.size() + copy.boundary_count + copy.inner_edges.size(),
+      shape.points.size());
+  for (int e : faces[folded].edges) {
+    const auto& m = mesher.edges()[e];
+    ASSERT_EQ(m.nodes.size() + m.mids.size(), g.edges[e].points.size());
+    for (std::size_t i = 0; i < m.mids.size(); ++i) {
+      EXPECT_EQ(m.nodes[i], g.edges[e].points[2 * i]);
+      EXPECT_EQ(m.mids[i], g.edges[e].points[2 * i + 1]);
+    }
+  }
+  EXPECT_TRUE(mesher.update().empty());
+  g.from_mesh = false;
+  std::swap(shape.triangles[0][1], shape.triangles[0][2]);
+  for (auto& e : faces[folded].edges)
+    for (auto& x : g.edges[e].points) x = middle;
+  BoundaryMesher strict(g, options, Vec3::Ones());
+  EXPECT_THROW(strict.update(), core::RecoverableError) << "there is no old mesh to keep";
+}
+
+TEST(MeshGeometry, CopiesEveryFaceOfAGrainThatFailsOtherwise) {
+  MeshingReport report;
+  const Mesh old = star_mesh(cubes(2), options_of(0.34), report);
+  const auto old_faces = old.topology.cell_faces[5];
+  std::size_t old_triangles = 0;
+  for (std::size_t i = 0; i < old.triangles.size(); ++i)
+    old_triangles += std::count(old_faces.begin(), old_faces.end(), old.triangle_face[i]);
+  int rounds = 0;
+  const auto picky = [&](const std::vector<GrainRequest>& requests) {
+    ++rounds;
+    auto results = star_meshes(requests);
+    for (std::size_t i = 0; i < requests.size(); ++i)
+      if (results[i].grain == 5 && requests[i].surface.triangles.size() != old_triangles)
+        results[i].ok = false;
+    return results;
+  };
+  const Mesh mesh =
+      mesh_geometry(geometry_of(old), options_of(0.5), Vec3::Ones(), GrainMeshers(picky), report);
+  ASSERT_NO_THROW(check(mesh));
+  auto wanted = old_faces;
+  std::sort(wanted.begin(), wanted.end());
+  EXPECT_EQ(report.copied_faces, wanted);
+  EXPECT_LE(rounds, 5);
+  EXPECT_NEAR(sum(grain_volumes(mesh)), 8, 1e-11);
+}
+
+TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
+  const auto failing = [](const std::vector<GrainRequest>& requests) {
+    auto results = star_meshes(requests);
+    for (auto& r : results)
+      if (r.grain == 2) r.ok = false, r.faults = {"star: refused"};
+    return results;
+  };
+  MeshingReport report;
+  for (bool from_mesh : {false, true}) {
+    Geometry g = from_mesh ? geometry_of(star_mesh(cubes(2), options_of(0.5), report)) : cubes(2);
+    try {
+      mesh_geometry(g, options_of(0.5), Vec3::Ones(), GrainMeshers(failing), report);
+      FAIL() << "nothing was thrown";
+    } catch (const core::RecoverableError& error) {
+      EXPECT_NE(std::string(error.what()).find("grain 3"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("refused"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(SelfIntersection, FindsTheTrianglesThatPierceEachOther) {
+  SurfaceMesh s;
+  s.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, -1}, {0.3, 0.2, 1}, {0.2, 0.9, 1}};
+  s.triangles = {{0, 1, 2}, {3, 4, 5}};
+  EXPECT_EQ(intersecting_triangles(s), (std::vector<int>{0, 1}));
+  for (int i = 3; i < 6; ++i) s.nodes[i][2] += 2;
+  EXPECT_TRUE(intersecting_triangles(s).empty());
+}
+
+}  // namespace
+}  // namespace polyslip::mesh

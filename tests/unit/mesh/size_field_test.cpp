@@ -1,0 +1,85 @@
+#include "mesh/size_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+TEST(EdgeNodes, AreEvenWhereNothingIsSmall) {
+  const auto s = edge_nodes(1.0, 0.25, 0.25, 0.25, 2);
+  ASSERT_EQ(s.size(), 5u);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(s[i], 0.25 * i, 1e-15);
+  EXPECT_EQ(edge_nodes(0.3, 0.25, 0.25, 0.25, 2).size(), 2u);
+  EXPECT_EQ(edge_nodes(0.36, 0.25, 0.25, 0.25, 2).size(), 3u) << "sqrt 2 is the limit";
+  EXPECT_EQ(edge_nodes(1e-3, 0.25, 0.25, 0.25, 2).size(), 2u);
+}
+
+TEST(EdgeNodes, StartFromTheSizeOfTheVertexAndGrowByTheFactor) {
+  // 0.1 (1 + 2 + 4) = 0.7, then 0.8 each.
+  const auto s = edge_nodes(0.7 + 4 * 0.8, 0.1, 0.8, 0.8, 2);
+  ASSERT_GE(s.size(), 7u);
+  EXPECT_NEAR(s[1], 0.1, 0.02);
+  EXPECT_NEAR((s[2] - s[1]) / s[1], 2, 0.2);
+}
+
+TEST(EdgeNodes, KeepTheProgressionFactorWhateverTheSizes) {
+  core::Random random(3, core::Stream::tests);
+  for (int i = 0; i < 2000; ++i) {
+    const double size = 0.25, p = random.uniform(1.05, 3), length = random.uniform(0.01, 4);
+    const double from = size * random.uniform(0.05, 1), to = size * random.uniform(0.05, 1);
+    const auto s = edge_nodes(length, from, to, size, p);
+    EXPECT_EQ(s.front(), 0);
+    EXPECT_EQ(s.back(), length);
+    for (std::size_t k = 1; k < s.size(); ++k) {
+      const double l = s[k] - s[k - 1];
+      EXPECT_GT(l, 0);
+      EXPECT_LE(l, size * 1.4143);
+      if (k < 2) continue;
+      const double before = s[k - 1] - s[k - 2];
+      EXPECT_LE(std::max(l, before) / std::min(l, before), p * (1 + 1e-8)) << i;
+    }
+  }
+  EXPECT_EQ(edge_nodes(1.0, 0.25, 0.1, 0.25, 1.0).size(), 11u) << "factor 1: the smallest size";
+}
+
+TEST(VertexSizes, AreThoseOfTheShortestEdgeTimesTheFactor) {
+  Topology t;
+  t.vertex_count = 4;
+  t.edges = {{{0, 1}}, {{1, 2}}, {{2, 3}}};
+  const auto sizes = vertex_sizes(t, {0.1, 0.24, 0.9}, 0.25, 2);
+  EXPECT_DOUBLE_EQ(sizes[0], 0.2);
+  EXPECT_DOUBLE_EQ(sizes[1], 0.2);
+  EXPECT_DOUBLE_EQ(sizes[2], 0.25);
+  EXPECT_DOUBLE_EQ(sizes[3], 0.25);
+}
+
+TEST(CurvedEdge, MeasuresAParabola) {
+  // y = x^2 on 0 ... 1: length (2 sqrt 5 + asinh 2) / 4.
+  const EdgeShape shape{{{0, 0, 0}, {0.5, 0.25, 0}, {1, 1, 0}}};
+  const CurvedEdge edge(shape, Vec3::Ones());
+  EXPECT_NEAR(edge.length(), (2 * std::sqrt(5.0) + std::asinh(2.0)) / 4, 1e-8);
+  const Vec3 x = edge.at(0.4 * edge.length());
+  EXPECT_NEAR(x[1], x[0] * x[0], 1e-15);
+  const double t = x[0];
+  const double to_x = (2 * t * std::sqrt(1 + 4 * t * t) + std::asinh(2 * t)) / 4;
+  EXPECT_NEAR(to_x, 0.4 * edge.length(), 1e-8);
+  EXPECT_EQ(edge.at(0), shape.points[0]);
+  EXPECT_EQ(edge.at(edge.length()), shape.points[2]);
+}
+
+TEST(CurvedEdge, TakesLengthsInTheScaledFrameAndGivesRealPoints) {
+  const EdgeShape shape{{{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {1, 0.5, 0}, {1, 1, 0}}};
+  const CurvedEdge edge(shape, Vec3(2, 3, 1));
+  EXPECT_NEAR(edge.length(), 5, 1e-14);
+  EXPECT_LT((edge.at(1) - Vec3(0.5, 0, 0)).norm(), 1e-14);
+  EXPECT_LT((edge.at(3.5) - Vec3(1, 0.5, 0)).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace polyslip::mesh
