@@ -78,6 +78,18 @@ const std::string& Deck::path() const { return impl_->path; }
 const std::string& Deck::text() const { return impl_->text; }
 const std::vector<Declaration>& Deck::declarations() const { return impl_->declarations; }
 
+bool Deck::given(const std::string& section, const std::string& key) const {
+  return impl_->find(section, key) != nullptr;
+}
+
+std::string Deck::where(const std::string& section, const std::string& key) const {
+  return impl_->place_text(impl_->place(section, key));
+}
+
+void Deck::fault(const std::string& section, const std::string& key, const std::string& what) {
+  impl_->cross_faults.push_back({impl_->place(section, key), "[" + section + "] " + what});
+}
+
 bool Deck::Table::given(const std::string& key) const {
   return deck_->find(section_, key) != nullptr;
 }

@@ -138,6 +138,10 @@ class Deck {
 
   /// Declares a section, with a sentence for the reference page.
   Table table(const std::string& section, const std::string& help = "");
+  /// `Table::given`, `Table::where` and `Table::fault` for checks between tables.
+  bool given(const std::string& section, const std::string& key) const;
+  std::string where(const std::string& section, const std::string& key) const;
+  void fault(const std::string& section, const std::string& key, const std::string& what);
   /// Throws the first fault (InputError), those of undeclared keys and tables among them.
   void finish() const;
 

@@ -16,8 +16,8 @@ std::string comment(const Declaration& d) {
   return text + d.help;
 }
 
-/// Text inside a cell of a Markdown table.
-std::string cell(const std::string& text) {
+/// Plain text in Markdown, in a table too.
+std::string plain(const std::string& text) {
   std::string result;
   for (const char c : text) {
     if (c == '|' || c == '<' || c == '*' || c == '_') result += '\\';
@@ -63,12 +63,12 @@ std::string Deck::reference() const {
   std::string text;
   for (const auto& [section, help] : impl_->sections) {
     text += fmt::format("{}## [{}]\n\n", text.empty() ? "" : "\n", section);
-    if (!help.empty()) text += help + "\n\n";
+    if (!help.empty()) text += plain(help) + "\n\n";
     text += "| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n";
     for (const auto& d : impl_->declarations)
       if (d.section == section)
         text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", code(d.key), d.type, d.unit,
-                            fallback_cell(d), cell(d.bounds), cell(d.help));
+                            fallback_cell(d), plain(d.bounds), plain(d.help));
   }
   return text;
 }

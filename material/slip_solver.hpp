@@ -49,10 +49,11 @@ struct SlipJacobian {
   Vec5v rows[5];
 };
 
-/// End-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma).
+/// End-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma), written so
+/// that rounding never lowers g.
 inline v4 voce_strength(const SlipConstants& c, v4 g_old, v4 total) {
   const v4 x = c.voce * total;
-  return (g_old + x * c.gs) / (1.0 + x);
+  return g_old + (c.gs - g_old) * (x / (1.0 + x));
 }
 /// dg/dGamma of voce_strength.
 inline v4 voce_strength_derivative(const SlipConstants& c, v4 g_old, v4 total) {

@@ -183,7 +183,7 @@ void draw_axes(Canvas& canvas, const View& view, double x, double y, double leng
     const double head = 0.1 * length;
     for (const double side : {-0.45, 0.45})
       canvas.line(to, to - head * along + side * head * across, 2.2, Stroke::ink);
-    const Vec3 centre = to + 0.24 * length * along;
+    const Vec3 centre = to + (0.2 + 0.12 * std::abs(along[0])) * length * along;
     canvas.text({centre[0] - 0.5 * text_width(name, height), centre[1] + 0.5 * height, 0}, name,
                 height);
   }
@@ -201,9 +201,9 @@ void write_picture(const std::string& path, const mesh::Snapshot& undeformed,
   if (!std::isfinite(scale) || scale <= 0)
     throw core::InternalError(fmt::format("results/picture: scale {}", scale));
   const double tallest = scale * std::max(extents[0].height(), extents[1].height());
-  const double axes = 0.06 * options.width;
+  const double axes = 0.05 * options.width;
   const double base = margin + tallest;  // of both bodies
-  const double foot = base + 1.9 * axes;
+  const double foot = base + 1.85 * axes;
   Canvas canvas(options.width, static_cast<int>(std::ceil(foot)));
   double left = margin;
   for (int i = 0; i < 2; ++i) {

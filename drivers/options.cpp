@@ -1,0 +1,309 @@
+#include "drivers/options.hpp"
+
+#include <algorithm>
+
+#include "drivers/options_check.hpp"
+
+namespace polyslip::drivers {
+
+namespace {
+
+using core::Deck;
+
+mesh::PolycrystalOptions read_polycrystal(Deck& deck) {
+  auto t =
+      deck.table("polycrystal",
+                 "The Voronoi polycrystal. The box is scaled so that grains have unit mean "
+                 "volume, which fixes the unit of every length of the deck and of the results.");
+  mesh::PolycrystalOptions o;
+  o.grains = static_cast<int>(t.integer(
+      "grains", {.fallback = o.grains, .min = 1, .max = 1'000'000, .help = "Number of grains."}));
+  o.seed = static_cast<std::uint64_t>(t.integer(
+      "seed", {.fallback = static_cast<std::int64_t>(o.seed),
+               .min = 0,
+               .help = "Same seed, same polycrystal and same uniform orientations, on any "
+                       "number of threads and ranks."}));
+  o.domain = t.vector3("domain", {.fallback = std::vector<double>{1, 1, 1},
+                                  .min = 0,
+                                  .exclusive_min = true,
+                                  .help = "Shape of the box along x (RD), y (TD) and z (ND); only "
+                                          "the ratios count."});
+  return o;
+}
+
+mesh::RegularisationOptions read_regularisation(Deck& deck) {
+  auto t = deck.table("regularisation",
+                      "Removal of short edges of the tessellation (section 2.1.2 of the paper).");
+  mesh::RegularisationOptions o;
+  o.max_edge_length =
+      t.number("max_edge_length", {.unit = "length",
+                                   .fallback = o.max_edge_length,
+                                   .min = 0,
+                                   .max = 1,
+                                   .help = "l_max: edges shorter than this are removed where "
+                                           "flatness allows; 0 removes none."});
+  o.max_flatness_fault =
+      t.number("max_flatness_fault", {.unit = "degrees",
+                                      .fallback = o.max_flatness_fault,
+                                      .min = 0,
+                                      .max = 90,
+                                      .help = "f_max: largest angle between the normals of the "
+                                              "triangles that make a face."});
+  return o;
+}
+
+mesh::MeshingOptions read_mesh(Deck& deck) {
+  auto t = deck.table("mesh", "The finite-element mesh, the first one and those of remeshings.");
+  mesh::MeshingOptions o;
+  o.element_size = t.number("element_size", {.unit = "length",
+                                             .fallback = o.element_size,
+                                             .min = 0.01,
+                                             .max = 10,
+                                             .help = "c_l: length of element edges."});
+  o.progression_factor =
+      t.number("progression_factor", {.fallback = o.progression_factor,
+                                      .min = 1,
+                                      .max = 100,
+                                      .help = "p_l: largest ratio of the lengths of neighbouring "
+                                              "elements on an edge."});
+  o.order = static_cast<int>(t.integer(
+      "order", {.fallback = o.order,
+                .min = 1,
+                .max = 2,
+                .help = "Order of the elements: 2 for a run; 1 may be asked of `polyslip mesh`."}));
+  o.meshers = t.texts("meshers", {.fallback = o.meshers,
+                                  .choices = {"gmsh-hxt", "gmsh-delaunay", "netgen"},
+                                  .unique = true,
+                                  .not_empty = true,
+                                  .help = "Meshers to try on each grain; the best mesh wins."});
+  o.mesher_timeout = t.number("mesher_timeout",
+                              {.unit = "s",
+                               .fallback = o.mesher_timeout,
+                               .min = 1,
+                               .max = 86400,
+                               .help = "CPU time a mesher may spend on one grain; beyond it that "
+                                       "candidate is lost, and the log says so."});
+  return o;
+}
+
+OrientationOptions read_orientation_options(Deck& deck) {
+  auto t = deck.table("orientations", "Initial crystal orientations, one a grain.");
+  OrientationOptions o;
+  o.distribution =
+      t.text("distribution", {.fallback = o.distribution,
+                              .choices = {"uniform", "file"},
+                              .help = "Uniform random orientations from the seed, or a file."});
+  o.file = t.optional_file(
+      "file",
+      {.help = "With distribution = \"file\": one orientation a line, as many lines as "
+               "grains; `#` starts a comment. A relative path starts at the deck's folder."});
+  o.convention = t.text(
+      "convention",
+      {.fallback = o.convention,
+       .choices = {"quaternion", "rodrigues", "euler-bunge"},
+       .help =
+           "What a line of the file holds: w x y z of a unit quaternion, r1 r2 r3 of a Rodrigues "
+           "vector (both of the rotation that turns crystal axes into sample axes), or phi1 Phi "
+           "phi2 in degrees (Bunge)."});
+  return o;
+}
+
+material::MaterialOptions read_material(Deck& deck) {
+  auto t =
+      deck.table("material",
+                 "Elasto-viscoplastic FCC crystal with the 12 {111}<110> systems: slip rate = "
+                 "reference_slip_rate |tau/g|^(1/m) sign(tau), dg/dt = h0 (gs - g)/(gs - g0) "
+                 "times the sum of the slip rates' magnitudes. Defaults: the paper's aluminium.");
+  material::MaterialOptions o;
+  const auto modulus = [&](const char* key, double fallback, bool positive, const char* help) {
+    return t.number(key, {.unit = "MPa",
+                          .fallback = fallback,
+                          .min = positive ? 0 : -core::unbounded,
+                          .exclusive_min = true,
+                          .help = help});
+  };
+  o.c11 = modulus("c11", o.c11, true, "Elastic constant C11; larger than c12.");
+  o.c12 = modulus("c12", o.c12, false, "Elastic constant C12; larger than -c11/2.");
+  o.c44 = modulus("c44", o.c44, true, "Elastic constant C44, half the modulus of tensor shear.");
+  o.reference_slip_rate = t.number("reference_slip_rate", {.unit = "1/s",
+                                                           .fallback = o.reference_slip_rate,
+                                                           .min = 0,
+                                                           .exclusive_min = true,
+                                                           .help = "Slip rate at tau = g."});
+  o.rate_sensitivity = t.number("rate_sensitivity",
+                                {.fallback = o.rate_sensitivity,
+                                 .min = 0.001,
+                                 .max = 1,
+                                 .help = "m: the exponent of |tau/g| is 1/m, so stress goes with "
+                                         "the strain rate to the power m."});
+  o.g0 = modulus("g0", o.g0, true, "Initial slip resistance.");
+  o.gs = modulus("gs", o.gs, true,
+                 "Slip resistance at saturation; larger than g0 (with h0 = 0 it "
+                 "may be equal).");
+  o.h0 = t.number("h0", {.unit = "MPa",
+                         .fallback = o.h0,
+                         .min = 0,
+                         .help = "Initial hardening modulus; 0: no hardening."});
+  return o;
+}
+
+solver::LoadingOptions read_loading(Deck& deck) {
+  auto t = deck.table("loading", "What is done to the box, and in which steps.");
+  solver::LoadingOptions o;
+  o.type =
+      t.text("type", {.fallback = o.type,
+                      .choices = {"plane-strain-compression"},
+                      .help = "Compression along z; y faces fixed in y, x0 a symmetry plane, x1 "
+                              "free; all sliding."});
+  o.strain_rate = t.number("strain_rate", {.unit = "1/s",
+                                           .fallback = o.strain_rate,
+                                           .min = 0,
+                                           .exclusive_min = true,
+                                           .help = "True strain rate, constant in time."});
+  o.final_strain =
+      t.number("final_strain", {.fallback = o.final_strain,
+                                .min = 0,
+                                .exclusive_min = true,
+                                .max = 10,
+                                .help = "Strain at the end, ln(initial height/height)."});
+  o.max_strain_increment = t.number("max_strain_increment", {.fallback = o.max_strain_increment,
+                                                             .min = 0,
+                                                             .exclusive_min = true,
+                                                             .max = 0.2,
+                                                             .help = "Largest step."});
+  o.initial_strain_increment = t.number(
+      "initial_strain_increment",
+      {.fallback = o.initial_strain_increment,
+       .min = 0,
+       .exclusive_min = true,
+       .help = "First step from zero stress, at the start and after a remeshing; not more than "
+               "max_strain_increment is taken."});
+  o.increment_growth =
+      t.number("increment_growth", {.fallback = o.increment_growth,
+                                    .min = 1,
+                                    .exclusive_min = true,
+                                    .max = 10,
+                                    .help = "Largest ratio of a step to the last."});
+  o.min_strain_increment =
+      t.number("min_strain_increment", {.fallback = o.min_strain_increment,
+                                        .min = 0,
+                                        .exclusive_min = true,
+                                        .help = "A run whose steps have to be smaller than this "
+                                                "stops, with a state to restart from."});
+  o.fixed_increment = t.boolean(
+      "fixed_increment",
+      {.fallback = o.fixed_increment,
+       .help = "Every step is max_strain_increment, or less to end at a strain that is asked for; "
+               "for comparisons of runs step by step."});
+  o.initial_strain_increment = std::min(o.initial_strain_increment, o.max_strain_increment);
+  return o;
+}
+
+remap::RemeshingOptions read_remeshing(Deck& deck) {
+  auto t = deck.table("remeshing", "When the deformed polycrystal gets a new mesh (section 2.3).");
+  remap::RemeshingOptions o;
+  o.at_strains =
+      t.numbers("at_strains", {.fallback = std::vector<double>{},
+                               .min = 0,
+                               .exclusive_min = true,
+                               .increasing = true,
+                               .help = "Strains at which to remesh; below final_strain."});
+  o.max_grain_volume_change = t.number("max_grain_volume_change",
+                                       {.fallback = o.max_grain_volume_change,
+                                        .min = 0,
+                                        .exclusive_min = true,
+                                        .max = 1,
+                                        .help = "Largest relative change of a grain's volume in a "
+                                                "remeshing; beyond it the run stops and names the "
+                                                "grain."});
+  return o;
+}
+
+solver::SolverOptions read_solver(Deck& deck) {
+  auto t = deck.table("solver", "Tolerances and limits of the equation solvers.");
+  solver::SolverOptions o;
+  const auto tolerance = [&](const char* key, double fallback, const char* help) {
+    return t.number(
+        key, {.fallback = fallback, .min = 1e-14, .max = 1, .exclusive_max = true, .help = help});
+  };
+  const auto count = [&](const char* key, int fallback, const char* help) {
+    return static_cast<int>(
+        t.integer(key, {.fallback = fallback, .min = 1, .max = 1'000'000, .help = help}));
+  };
+  o.newton_tolerance = tolerance(
+      "newton_tolerance", o.newton_tolerance,
+      "A step has converged when the forces out of balance at free nodes are this small "
+      "relative to the reactions at prescribed ones (2-norms), their sums and first moments "
+      "relative to the largest face force, and the volumes' mismatch (rms of ln(V/V0) - p/K) "
+      "relative to the strain increment.");
+  o.linear_tolerance =
+      tolerance("linear_tolerance", o.linear_tolerance,
+                "A linear solve ends when the 2-norm of its residual is this small relative to the "
+                "2-norm of its right side.");
+  o.max_newton_iterations = count("max_newton_iterations", o.max_newton_iterations,
+                                  "Newton iterations of a step; beyond them the step is cut.");
+  o.max_linear_iterations = count("max_linear_iterations", o.max_linear_iterations,
+                                  "Iterations of a linear solve; beyond them the step is cut.");
+  return o;
+}
+
+OutputOptions read_output(Deck& deck) {
+  auto t = deck.table("output", "Which states are kept.");
+  OutputOptions o;
+  o.at_strains = t.numbers(
+      "at_strains", {.fallback = std::vector<double>{},
+                     .min = 0,
+                     .increasing = true,
+                     .help = "Strains at which a state is stored, besides the start, the end "
+                             "and both sides of each remeshing."});
+  o.checkpoint_every_strain = t.number(
+      "checkpoint_every_strain",
+      {.fallback = o.checkpoint_every_strain,
+       .min = 0,
+       .help = "A checkpoint to restart from at every multiple of this strain, besides the "
+               "end and both sides of each remeshing; 0: at those only."});
+  return o;
+}
+
+Options declare(Deck& deck) {
+  Options o;
+  o.polycrystal = read_polycrystal(deck);
+  o.regularisation = read_regularisation(deck);
+  o.mesh = read_mesh(deck);
+  o.orientations = read_orientation_options(deck);
+  o.material = read_material(deck);
+  o.loading = read_loading(deck);
+  o.remeshing = read_remeshing(deck);
+  o.solver = read_solver(deck);
+  o.output = read_output(deck);
+  return o;
+}
+
+}  // namespace
+
+Options read_options(Deck& deck, Purpose purpose) {
+  Options options = declare(deck);
+  check_options(deck, options, purpose);
+  deck.finish();
+  return options;
+}
+
+std::string deck_reference_page() {
+  Deck deck = Deck::from_text("", "deck.toml");
+  declare(deck);
+  return "# The deck\n\n"
+         "A deck is a TOML file. This page is generated from the program "
+         "(`build/polyslip-deckref > docs/deck.md`);\na test fails when it is stale. Every key has "
+         "a "
+         "default, an unknown key or table is an error,\nand the run folder keeps the deck as "
+         "given "
+         "and, in `deck.resolved.toml`, with every default.\n\n"
+         "Lengths are for grains of unit mean volume: a grain is about 1.24 across. Strains are "
+         "true\n"
+         "strains along z, ln(initial height/height). Axes: x is RD, y is TD, z is ND, the "
+         "direction\n"
+         "of compression. An integer will do where a number is asked.\n\n" +
+         deck.reference();
+}
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,52 @@
+#pragma once
+// Everything a deck says, as one struct, and its reader.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/deck.hpp"
+#include "material/crystal_law.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/tessellation.hpp"
+#include "remap/remesh.hpp"
+#include "solver/options.hpp"
+
+namespace polyslip::drivers {
+
+/// What a deck asks for in [orientations].
+struct OrientationOptions {
+  std::string distribution = "uniform";   ///< "uniform" or "file"
+  std::optional<std::string> file;        ///< path to open; set if and only if "file"
+  std::string convention = "quaternion";  ///< "quaternion", "rodrigues" or "euler-bunge"
+};
+
+/// What a deck asks for in [output].
+struct OutputOptions {
+  std::vector<double> at_strains;        ///< increasing, within [0, final_strain]
+  double checkpoint_every_strain = 0.1;  ///< 0: at remeshings and the end only
+};
+
+struct Options {
+  mesh::PolycrystalOptions polycrystal;
+  mesh::RegularisationOptions regularisation;
+  mesh::MeshingOptions mesh;
+  OrientationOptions orientations;
+  material::MaterialOptions material;
+  solver::LoadingOptions loading;
+  remap::RemeshingOptions remeshing;
+  solver::SolverOptions solver;
+  OutputOptions output;
+};
+
+/// What the deck is read for: a run needs elements of order 2, meshing alone does not.
+enum class Purpose { run, mesh };
+
+/// Reads and checks the whole deck, and finishes it. InputError for the first fault, with its
+/// place.
+Options read_options(core::Deck& deck, Purpose purpose = Purpose::run);
+
+/// docs/deck.md: the reference of every key, from the declarations.
+std::string deck_reference_page();
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,89 @@
+#include "drivers/options_check.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace polyslip::drivers {
+
+namespace {
+
+using core::Deck;
+
+/// "g0 = 8 (deck.toml:12:6)", or "g0 = 8 (default)".
+std::string with_place(const Deck& deck, const std::string& section, const std::string& key,
+                       double value) {
+  const std::string place = deck.given(section, key) ? deck.where(section, key) : "default";
+  return fmt::format("{} = {} ({})", key, value, place);
+}
+
+void check_orientations(Deck& deck, const OrientationOptions& o) {
+  const char* section = "orientations";
+  if (o.distribution == "uniform" && o.file)
+    deck.fault(section, "file",
+               "file is not used with distribution = \"uniform\"; remove it, or set distribution = "
+               "\"file\"");
+  if (o.distribution != "file") return;
+  if (!o.file)
+    deck.fault(section, "distribution", "distribution = \"file\" needs the key file");
+  else if (!std::filesystem::exists(*o.file))
+    deck.fault(section, "file", fmt::format("{}: no such file", *o.file));
+  else if (!std::filesystem::is_regular_file(*o.file))
+    deck.fault(section, "file", fmt::format("{}: is not a file", *o.file));
+}
+
+void check_material(Deck& deck, const material::MaterialOptions& o) {
+  const char* section = "material";
+  if (!(o.c11 > o.c12))
+    deck.fault(section, "c11",
+               fmt::format("c11 = {} must be > {}: the crystal would be unstable in shear", o.c11,
+                           with_place(deck, section, "c12", o.c12)));
+  if (!(o.c11 + 2 * o.c12 > 0))
+    deck.fault(section, "c12",
+               fmt::format("c12 = {} must be > -c11/2, {}: the bulk modulus would not be positive",
+                           o.c12, with_place(deck, section, "c11", o.c11)));
+  if (o.h0 > 0 ? !(o.gs > o.g0) : !(o.gs >= o.g0))
+    deck.fault(section, "gs",
+               fmt::format("gs = {} must be {} {}{}", o.gs,
+                           o.h0 > 0 ? ">" : ">=", with_place(deck, section, "g0", o.g0),
+                           o.h0 > 0 && o.gs == o.g0 ? "; for no hardening set h0 = 0" : ""));
+}
+
+void check_loading(Deck& deck, const solver::LoadingOptions& o) {
+  if (!(o.min_strain_increment < o.initial_strain_increment))
+    deck.fault("loading", "min_strain_increment",
+               fmt::format("min_strain_increment = {} must be below the first step, {}",
+                           o.min_strain_increment, o.initial_strain_increment));
+}
+
+void check_strains(Deck& deck, const Options& o) {
+  const double end = o.loading.final_strain;
+  const std::string final_strain = with_place(deck, "loading", "final_strain", end);
+  for (const double strain : o.remeshing.at_strains)
+    if (!(strain < end)) {
+      deck.fault("remeshing", "at_strains",
+                 fmt::format("at_strains: {} must be < {}", strain, final_strain));
+      break;
+    }
+  for (const double strain : o.output.at_strains)
+    if (!(strain <= end)) {
+      deck.fault("output", "at_strains",
+                 fmt::format("at_strains: {} must be <= {}", strain, final_strain));
+      break;
+    }
+}
+
+}  // namespace
+
+void check_options(Deck& deck, const Options& options, Purpose purpose) {
+  check_orientations(deck, options.orientations);
+  check_material(deck, options.material);
+  check_loading(deck, options.loading);
+  check_strains(deck, options);
+  if (purpose == Purpose::run && options.mesh.order != 2)
+    deck.fault("mesh", "order",
+               fmt::format("order = {} is for `polyslip mesh` only; a run needs order = 2",
+                           options.mesh.order));
+}
+
+}  // namespace polyslip::drivers
