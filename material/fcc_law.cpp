@@ -59,15 +59,16 @@ struct SolvedBlock {
   Mat3v slip_rotation;        ///< exp(-hat(w))
   SlipProblem problem;
   SlipPoint point;
+  Vec5v stress;  ///< s = g x, lattice frame [MPa]
 };
 
 /// dstress/dh (theory page, "Tangent"), entry 9 i + 3 k + l at tangent + lanes (9 i + 3 k + l).
 void write_tangent(const SlipConstants& c, const SolvedBlock& block, m4 valid, double* tangent) {
-  const SlipJacobian derivative = jacobian(c, c.exponent, block.problem, block.point);
+  const SlipJacobian derivative = jacobian(c, block.problem, block.point);
   const Factors factors = factorise(derivative.rows);
   const StepKinematicsDerivative kinematics = step_kinematics_derivative(block.kinematics);
   const Mat3v& e = block.slip_rotation;
-  const Mat3v turned = conjugate(e, to_matrix(block.point.stress));  // rotated frame of n
+  const Mat3v turned = conjugate(e, to_matrix(block.stress));  // rotated frame of n
   Vec3v minus_w;
   for (int k = 0; k < 3; ++k) minus_w[k] = -block.point.spin[k];
   const Mat3v exp_rate = exp_derivative(minus_w);
@@ -85,10 +86,16 @@ void write_tangent(const SlipConstants& c, const SolvedBlock& block, m4 valid, d
     Vec5v load = commutator(block.point.spin, to_matrix(unit5(j)));
     for (int i = 0; i < 5; ++i) load[i] *= 0.5;
     load[j] += 1.0;
-    const Vec5v ds = solve(factors, load);
+    const Vec5v dx = solve(factors, load);
+    const v4 dg = dot(derivative.strength, dx);
+    Vec5v ds;
+    for (int i = 0; i < 5; ++i) ds[i] = block.point.g * dx[i] + block.point.reduced[i] * dg;
     const Vec5v ds_turned = to_deviator(conjugate(e, to_matrix(ds)));
     Vec3v dw, rotation;
-    for (int k = 0; k < 3; ++k) dw[k] = dot(derivative.spin[k], ds);
+    for (int k = 0; k < 3; ++k) {
+      dw[k] = broadcast(0.0);
+      for (int i = 0; i < 5; ++i) dw[k] += derivative.spin[i][k] * dx[i];
+    }
     for (int k = 0; k < 3; ++k) {
       rotation[k] = exp_rate[k][0] * dw[0] + exp_rate[k][1] * dw[1] + exp_rate[k][2] * dw[2];
     }
@@ -133,7 +140,7 @@ void write_state(const SolvedBlock& block, const Quaternionv& old, const double*
   };
   for (int i = 0; i < 4; ++i) put(orientation + i, q[i] * scale);
   for (int i = 0; i < 5; ++i) {
-    put(elastic_strain + i, block.point.stress[i] * (1.0 / c.moduli[static_cast<std::size_t>(i)]));
+    put(elastic_strain + i, block.stress[i] * (1.0 / c.moduli[static_cast<std::size_t>(i)]));
   }
   put(strength, block.point.g);
   put(slip, load(state_old + lanes * slip) + block.point.total);
@@ -142,8 +149,8 @@ void write_state(const SolvedBlock& block, const Quaternionv& old, const double*
 }
 
 void write_stress(const SolvedBlock& block, m4 valid, double* stress) {
-  const Mat3v s = conjugate(block.trial_rotation,
-                            conjugate(block.slip_rotation, to_matrix(block.point.stress)));
+  const Mat3v s =
+      conjugate(block.trial_rotation, conjugate(block.slip_rotation, to_matrix(block.stress)));
   const v4 mandel[6] = {s[0][0],           s[1][1], s[2][2], sqrt_two * s[1][2], sqrt_two * s[2][0],
                         sqrt_two * s[0][1]};
   for (int i = 0; i < 6; ++i) store(stress + lanes * i, select(valid, mandel[i], broadcast(0.0)));
@@ -219,6 +226,7 @@ void FccLaw::update_block(const PointBlocks& blocks, int index) const {
   problem.g_old = select(usable, g_old, broadcast(1.0));
   problem.dt_rate = blocks.time_step * constants_.reference_rate;
   const m4 valid = solve_slip(constants_, problem, block.point) & solvable;
+  for (int i = 0; i < 5; ++i) block.stress[i] = block.point.g * block.point.reduced[i];
 
   block.trial_rotation = mul(rotation, block.kinematics.rotation);
   Vec3v minus_w;

@@ -30,11 +30,12 @@ struct SlipProblem {
   double dt_rate;     ///< dt gammadot0 [1]
 };
 
-/// Everything that the residual makes on its way, at the stress of the point.
+/// Everything that the residual makes on its way, at the reduced stress of the point. With
+/// x = s/g as unknown the slips do not need g, so Voce's g follows from them in closed form.
 struct SlipPoint {
-  Vec5v stress;            ///< s = C' e [MPa]
+  Vec5v reduced;           ///< x = s/g, s = C' e
   v4 slip[systems];        ///< Dg_a
-  v4 compliance[systems];  ///< dDg_a/dtau_a at fixed g [1/MPa]
+  v4 compliance[systems];  ///< dDg_a/d(P_a : x)
   v4 g;                    ///< end-of-step g [MPa]
   v4 total;                ///< Gamma = sum |Dg_a|
   Vec5v plastic;           ///< p = sum Dg_a P_a
@@ -43,140 +44,109 @@ struct SlipPoint {
   v4 norm;                 ///< |residual|
 };
 
-/// The derivatives of slip with respect to the stress, and the Jacobian dresidual/ds [5x5].
+/// Derivatives with respect to x.
 struct SlipJacobian {
-  Vec5v spin[3];  ///< rows of dw/ds
-  Vec5v rows[5];
+  Vec3v spin[5];   ///< columns of dw/dx
+  Vec5v strength;  ///< dg/dx [MPa]
+  Vec5v rows[5];   ///< dresidual/dx
 };
 
 /// End-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma), written so
 /// that rounding never lowers g.
 inline v4 voce_strength(const SlipConstants& c, v4 g_old, v4 total) {
-  const v4 x = c.voce * total;
-  return g_old + (c.gs - g_old) * (x / (1.0 + x));
+  const v4 y = c.voce * total;
+  return g_old + (c.gs - g_old) * (y / (1.0 + y));
 }
 /// dg/dGamma of voce_strength.
 inline v4 voce_strength_derivative(const SlipConstants& c, v4 g_old, v4 total) {
-  const v4 x = 1.0 + c.voce * total;
-  return c.voce * (c.gs - g_old) / (x * x);
+  const v4 y = 1.0 + c.voce * total;
+  return c.voce * (c.gs - g_old) / (y * y);
 }
 
-/// ln of the factor that takes slips computed with the strength g_trial to those with the strength
-/// that they cause: y = ln Gamma solves y + n ln g(exp y) = ln Gamma_trial + n ln g_trial. The left
-/// side grows with slope 1 or more; Newton's method kept inside a shrinking bracket.
-inline v4 hardening_shift(const SlipConstants& c, double n, v4 g_old, v4 total_trial, v4 g_trial) {
-  const v4 start = log(max(total_trial, broadcast(1e-280)));
-  const v4 target = start + n * log(g_trial);
-  const v4 gs = broadcast(c.gs);
-  v4 low = target - n * log(max(gs, g_old));
-  v4 high = target - n * log(min(gs, g_old));
-  v4 y = min(max(start, low), high);
-  m4 open = total_trial * c.voce > 1e-18;
-  for (int iteration = 0; iteration < 80 && any(open); ++iteration) {
-    const v4 total = exp(y);
-    const v4 g = voce_strength(c, g_old, total);
-    const v4 excess = y + n * log(g) - target;
-    low = select(excess < 0.0, y, low);
-    high = select(excess > 0.0, y, high);
-    v4 next = y - excess / (1.0 + n * total * voce_strength_derivative(c, g_old, total) / g);
-    next = select((next < low) | (next > high), 0.5 * (low + high), next);
-    const v4 change = abs(next - y);
-    y = select(open, next, y);
-    open = open & (change > 1e-8);
+/// P_a : x of every system.
+inline void resolve(const SlipConstants& c, const Vec5v& x, v4* ratio) {
+  for (std::size_t a = 0; a < systems; ++a) {
+    ratio[a] = x[0] * c.schmid[a][0];
+    for (int i = 1; i < 5; ++i) ratio[a] += x[i] * c.schmid[a][static_cast<std::size_t>(i)];
   }
-  return y - start;
 }
 
-/// The residual at point.stress; point.g holds a first guess of the strength and gets the new one.
+/// The residual at point.reduced.
 inline void evaluate(const SlipConstants& c, double n, const SlipProblem& problem,
                      SlipPoint& point) {
-  const v4 inverse_g = 1.0 / point.g;
+  v4 ratio[systems];
+  resolve(c, point.reduced, ratio);
   v4 total = broadcast(0.0);
-  for (int a = 0; a < systems; ++a) {
-    const auto& schmid = c.schmid[static_cast<std::size_t>(a)];
-    v4 ratio = point.stress[0] * schmid[0];
-    for (int i = 1; i < 5; ++i) ratio += point.stress[i] * schmid[static_cast<std::size_t>(i)];
-    ratio *= inverse_g;
-    const v4 size = max(abs(ratio), broadcast(1e-300));
+  for (int i = 0; i < 5; ++i) point.plastic[i] = broadcast(0.0);
+  for (int k = 0; k < 3; ++k) point.spin[k] = broadcast(0.0);
+  for (std::size_t a = 0; a < systems; ++a) {
+    const v4 size = max(abs(ratio[a]), broadcast(1e-300));
     // |tau/g|^(n-1), bounded so that no later product overflows
-    const v4 power = exp(min((n - 1.0) * log(size), broadcast(200.0)));
-    point.compliance[a] = (n * problem.dt_rate) * power * inverse_g;
-    point.slip[a] = problem.dt_rate * power * ratio;
-    total += abs(point.slip[a]);
+    const v4 power = problem.dt_rate * exp(min((n - 1.0) * log(size), broadcast(200.0)));
+    point.compliance[a] = n * power;
+    point.slip[a] = power * ratio[a];
   }
-  if (c.voce > 0) {
-    const v4 factor = exp(hardening_shift(c, n, problem.g_old, total, point.g));
-    total *= factor;
-    for (int a = 0; a < systems; ++a) {
-      point.slip[a] *= factor;
-      point.compliance[a] *= factor;
+  for (std::size_t a = 0; a < systems; ++a) {
+    total += abs(point.slip[a]);
+    for (int i = 0; i < 5; ++i) {
+      point.plastic[i] += point.slip[a] * c.schmid[a][static_cast<std::size_t>(i)];
+    }
+    for (int k = 0; k < 3; ++k) {
+      point.spin[k] += point.slip[a] * c.spin[a][static_cast<std::size_t>(k)];
     }
   }
   point.total = total;
   point.g = voce_strength(c, problem.g_old, total);
-  for (int i = 0; i < 5; ++i) point.plastic[i] = broadcast(0.0);
-  for (int k = 0; k < 3; ++k) point.spin[k] = broadcast(0.0);
-  for (int a = 0; a < systems; ++a) {
-    const auto system = static_cast<std::size_t>(a);
-    for (int i = 0; i < 5; ++i) {
-      point.plastic[i] += point.slip[a] * c.schmid[system][static_cast<std::size_t>(i)];
-    }
-    for (int k = 0; k < 3; ++k) {
-      point.spin[k] += point.slip[a] * c.spin[system][static_cast<std::size_t>(k)];
-    }
-  }
   for (int i = 0; i < 5; ++i) {
-    point.residual[i] = point.stress[i] * (1.0 / c.moduli[static_cast<std::size_t>(i)]) -
-                        problem.elastic_old[i] - problem.strain[i] + point.plastic[i];
+    const double elastic_compliance = 1.0 / c.moduli[static_cast<std::size_t>(i)];
+    point.residual[i] = point.g * point.reduced[i] * elastic_compliance - problem.elastic_old[i] -
+                        problem.strain[i] + point.plastic[i];
     for (int k = 0; k < 3; ++k) point.residual[i] -= problem.turn[k][i] * point.spin[k];
   }
   point.norm = sqrt(dot(point.residual, point.residual));
 }
 
-/// The twin of evaluate: dDg_a = compliance_a dtau_a - Dg_a beta t . ds with t = dGamma/ds at fixed
-/// g and beta = (n g'/g)/(1 + n Gamma g'/g); then
-/// dp/ds = sum compliance_a P_a P_a - beta p t, dw/ds = sum compliance_a q_a P_a - beta w t,
-/// dresidual/ds = C'^-1 + dp/ds - M dw/ds.
-inline SlipJacobian jacobian(const SlipConstants& c, double n, const SlipProblem& problem,
+/// The twin of evaluate: dDg_a = compliance_a P_a . dx, dw/dx = sum compliance_a q_a P_a,
+/// dg/dx = g' sum |.|'_a P_a,
+/// dresidual/dx = g C'^-1 + (C'^-1 x) (dg/dx) + sum compliance_a P_a P_a - M dw/dx.
+/// Symmetric positive definite but for terms of the order of the strain increments.
+inline SlipJacobian jacobian(const SlipConstants& c, const SlipProblem& problem,
                              const SlipPoint& point) {
   SlipJacobian result = {};
-  Vec5v t = {};
-  for (int a = 0; a < systems; ++a) {
-    const auto system = static_cast<std::size_t>(a);
+  for (std::size_t a = 0; a < systems; ++a) {
     Vec5v scaled;
+    const v4 sign = copysign(broadcast(1.0), point.slip[a]);
     for (int i = 0; i < 5; ++i) {
-      scaled[i] = point.compliance[a] * c.schmid[system][static_cast<std::size_t>(i)];
-      t[i] += copysign(broadcast(1.0), point.slip[a]) * scaled[i];
+      scaled[i] = point.compliance[a] * c.schmid[a][static_cast<std::size_t>(i)];
+      result.strength[i] += sign * scaled[i];
     }
-    for (int i = 0; i < 5; ++i) {
-      for (int j = i; j < 5; ++j) {
-        result.rows[i][j] += scaled[j] * c.schmid[system][static_cast<std::size_t>(i)];
+    for (int j = 0; j < 5; ++j) {
+      for (int i = 0; i <= j; ++i) {
+        result.rows[i][j] += scaled[j] * c.schmid[a][static_cast<std::size_t>(i)];
       }
-    }
-    for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 5; ++j) {
-        result.spin[k][j] += scaled[j] * c.spin[system][static_cast<std::size_t>(k)];
+      for (int k = 0; k < 3; ++k) {
+        result.spin[j][k] += scaled[j] * c.spin[a][static_cast<std::size_t>(k)];
       }
     }
   }
-  const v4 slope = n * voce_strength_derivative(c, problem.g_old, point.total) / point.g;
-  const v4 beta = slope / (1.0 + point.total * slope);
+  const v4 hardening = voce_strength_derivative(c, problem.g_old, point.total);
   for (int i = 0; i < 5; ++i) {
+    result.strength[i] *= hardening;
     for (int j = 0; j < i; ++j) result.rows[i][j] = result.rows[j][i];
   }
-  for (int j = 0; j < 5; ++j) {
-    for (int k = 0; k < 3; ++k) result.spin[k][j] -= beta * point.spin[k] * t[j];
-    for (int i = 0; i < 5; ++i) {
-      result.rows[i][j] -= beta * point.plastic[i] * t[j];
-      for (int k = 0; k < 3; ++k) result.rows[i][j] -= problem.turn[k][i] * result.spin[k][j];
+  for (int i = 0; i < 5; ++i) {
+    const double elastic_compliance = 1.0 / c.moduli[static_cast<std::size_t>(i)];
+    const v4 elastic = point.reduced[i] * elastic_compliance;
+    for (int j = 0; j < 5; ++j) {
+      result.rows[i][j] += elastic * result.strength[j];
+      for (int k = 0; k < 3; ++k) result.rows[i][j] -= problem.turn[k][i] * result.spin[j][k];
     }
-    result.rows[j][j] += 1.0 / c.moduli[static_cast<std::size_t>(j)];
+    result.rows[i][i] += point.g * elastic_compliance;
   }
   return result;
 }
 
-/// LU factors without pivoting: the matrix is symmetric positive definite but for terms of the
-/// order of the strain increment.
+/// LU factors without pivoting, for the matrix of jacobian().
 struct Factors {
   v4 a[5][5];  ///< unit lower and upper triangle
   v4 inverse_pivot[5];
@@ -208,31 +178,26 @@ inline Vec5v solve(const Factors& f, Vec5v x) {
   return x;
 }
 
-/// The elastic trial stress drawn back along itself to where the incremental potential
+/// The elastic trial stress over g_n, drawn back along itself to where the incremental potential
 /// s.C'^-1 s/2 - s.e_trial + sum Dg_a tau_a/(n + 1) is least on that ray, at g = g_n. The last term
 /// is homogeneous in s, so one evaluation of the powers is enough.
 inline Vec5v clipped_trial(const SlipConstants& c, double n, const SlipProblem& problem) {
-  Vec5v trial, stress;
+  Vec5v trial, x;
   for (int i = 0; i < 5; ++i) {
     trial[i] = problem.elastic_old[i] + problem.strain[i];
-    stress[i] = trial[i] * c.moduli[static_cast<std::size_t>(i)];
+    x[i] = trial[i] * c.moduli[static_cast<std::size_t>(i)] / problem.g_old;
   }
   v4 ratio[systems];
+  resolve(c, x, ratio);
   v4 largest = broadcast(1e-200);
-  for (int a = 0; a < systems; ++a) {
-    const auto& schmid = c.schmid[static_cast<std::size_t>(a)];
-    ratio[a] = stress[0] * schmid[0];
-    for (int i = 1; i < 5; ++i) ratio[a] += stress[i] * schmid[static_cast<std::size_t>(i)];
-    ratio[a] = abs(ratio[a]) / problem.g_old;
-    largest = max(largest, ratio[a]);
+  for (const v4& r : ratio) largest = max(largest, abs(r));
+  v4 work = broadcast(0.0);  // sum Dg_a tau_a/g where the largest |tau_a|/g is 1
+  for (const v4& r : ratio) {
+    work += exp((n + 1.0) * log(max(abs(r) / largest, broadcast(1e-300))));
   }
-  v4 work = broadcast(0.0);  // sum Dg_a tau_a where the largest |tau_a|/g is 1
-  for (int a = 0; a < systems; ++a) {
-    work += exp((n + 1.0) * log(max(ratio[a] / largest, broadcast(1e-300))));
-  }
-  work *= problem.dt_rate * problem.g_old;
-  // With s = mu s_trial/largest: elastic mu + work mu^n = elastic largest; y = ln mu
-  const v4 elastic = max(dot(trial, stress) / (largest * largest), broadcast(1e-200));
+  work *= problem.dt_rate;
+  // With x = mu x_trial/largest: elastic mu + work mu^n = elastic largest; y = ln mu
+  const v4 elastic = max(dot(trial, x) / (largest * largest), broadcast(1e-200));
   const v4 load = elastic * largest;
   const v4 limit = log(largest);
   v4 y = min(limit, log(max(load / max(work, broadcast(1e-200)), broadcast(1e-200))) * (1.0 / n));
@@ -241,48 +206,32 @@ inline Vec5v clipped_trial(const SlipConstants& c, double n, const SlipProblem& 
     y -= (linear + power - load) / (linear + n * power);
   }
   const v4 factor = exp(min(y - limit, broadcast(0.0)));
-  for (int i = 0; i < 5; ++i) stress[i] *= factor;
-  return stress;
+  for (int i = 0; i < 5; ++i) x[i] *= factor;
+  return x;
 }
 
 inline constexpr double relative_tolerance = 1e-12;
 inline constexpr int max_evaluations = 200;  ///< of the residual in one Newton solve
 
-/// Evaluates at `start` and lets it replace `point` in the lanes where its residual is smaller.
-inline void offer(const SlipConstants& c, double n, const SlipProblem& problem, const Vec5v& start,
-                  SlipPoint& point) {
-  SlipPoint other;
-  other.stress = start;
-  other.g = problem.g_old;
-  evaluate(c, n, problem, other);
-  const m4 better = other.norm < point.norm;
-  for (int i = 0; i < 5; ++i) point.stress[i] = select(better, other.stress[i], point.stress[i]);
-  point.g = select(better, other.g, point.g);
-  point.norm = select(better, other.norm, point.norm);
-}
-
-/// Newton's method for residual = 0 from point.stress, point.g with backtracking until |residual|
-/// falls: Armijo's rule with the fraction 1e-4, step factors from the parabola through value, slope
-/// and the rejected value, kept in [0.1, 0.5]. A lane that has reached `tolerance` or cannot fall
-/// any more stands still: later evaluations repeat its last one bit for bit, so that no lane
-/// depends on its neighbours. On return `point` is evaluated; the lanes that converged are
+/// Newton's method for residual = 0 from `point`, which is evaluated, with backtracking until
+/// |residual| falls: Armijo's rule with the fraction 1e-4, step factors from the parabola through
+/// value, slope and the rejected value, kept in [0.1, 0.5]. A lane that has reached `tolerance` or
+/// cannot fall any more stands still: later evaluations repeat its last one bit for bit, so that no
+/// lane depends on its neighbours. On return `point` is evaluated; the lanes that converged are
 /// returned.
 inline m4 newton(const SlipConstants& c, double n, const SlipProblem& problem, v4 tolerance,
                  SlipPoint& point) {
-  v4 guess = point.g;
-  evaluate(c, n, problem, point);
   m4 open = ~(point.norm <= tolerance);
   for (int evaluation = 0; evaluation < max_evaluations && any(open);) {
-    Vec5v step = solve(factorise(jacobian(c, n, problem, point).rows), point.residual);
-    for (int i = 0; i < 5; ++i) step[i] = select(open, -step[i], broadcast(0.0));
-    const Vec5v start = point.stress;
+    const Vec5v step = solve(factorise(jacobian(c, problem, point).rows), point.residual);
+    const Vec5v start = point.reduced;
     const v4 norm = point.norm;
-    guess = select(open, point.g, guess);
-    v4 factor = broadcast(1.0);
+    v4 factor = select(open, broadcast(1.0), broadcast(0.0));
     m4 search = open;
     while (any(search) && evaluation < max_evaluations) {
-      for (int i = 0; i < 5; ++i) point.stress[i] = start[i] + factor * step[i];
-      point.g = guess;
+      for (int i = 0; i < 5; ++i) {
+        point.reduced[i] = select(open, start[i] - factor * step[i], start[i]);
+      }
       evaluate(c, n, problem, point);
       ++evaluation;
       search = search & ~(point.norm <= (1.0 - 1e-4 * factor) * norm);
@@ -300,37 +249,49 @@ inline m4 newton(const SlipConstants& c, double n, const SlipProblem& problem, v
   return point.norm <= tolerance;
 }
 
-/// Solves a step. The start is the old stress or the clipped trial stress, whichever leaves the
-/// smaller residual. Should a lane fail, the whole block is solved again by continuation in the
-/// exponent (4, 8, 16, ... n), which only lanes that failed take over. Tolerance on |residual|:
-/// relative_tolerance g_n/max(C') plus what rounding leaves of the strains and powers.
+/// Solves a step. The start is the old stress, or the clipped trial stress where the old one leaves
+/// more than half the strain increment as residual and the trial less than it. Should a lane fail,
+/// the whole block is solved again by continuation in the exponent (4, 8, 16, ... n), which only
+/// lanes that failed take over. Tolerance on |residual|: relative_tolerance g_n/max(C') plus what
+/// rounding leaves of the strains and powers.
 inline m4 solve_slip(const SlipConstants& c, const SlipProblem& problem, SlipPoint& point) {
   double stiffest = c.moduli[0];
   for (const double modulus : c.moduli) stiffest = modulus > stiffest ? modulus : stiffest;
-  const v4 size = sqrt(dot(problem.strain, problem.strain)) +
-                  sqrt(dot(problem.elastic_old, problem.elastic_old));
+  const v4 increment = sqrt(dot(problem.strain, problem.strain));
+  const v4 size = increment + sqrt(dot(problem.elastic_old, problem.elastic_old));
   const v4 tolerance =
       problem.g_old * (relative_tolerance / stiffest) + size * (8 * 2.2e-16 * c.exponent);
   for (int i = 0; i < 5; ++i) {
-    point.stress[i] = problem.elastic_old[i] * c.moduli[static_cast<std::size_t>(i)];
+    point.reduced[i] =
+        problem.elastic_old[i] * c.moduli[static_cast<std::size_t>(i)] / problem.g_old;
   }
-  point.g = problem.g_old;
   evaluate(c, c.exponent, problem, point);
-  offer(c, c.exponent, problem, clipped_trial(c, c.exponent, problem), point);
+  const m4 far = ~(point.norm <= 0.5 * increment);
+  if (any(far)) {
+    SlipPoint other;
+    other.reduced = clipped_trial(c, c.exponent, problem);
+    evaluate(c, c.exponent, problem, other);
+    const m4 better = far & (other.norm < point.norm);
+    for (int i = 0; i < 5; ++i) {
+      point.reduced[i] = select(better, other.reduced[i], point.reduced[i]);
+    }
+    evaluate(c, c.exponent, problem, point);
+  }
   const m4 converged = newton(c, c.exponent, problem, tolerance, point);
   if (all(converged)) return converged;
   SlipPoint other;
-  other.stress = clipped_trial(c, 4.0, problem);
-  other.g = problem.g_old;
+  other.reduced = clipped_trial(c, 4.0, problem);
   for (double n = 4.0; n < c.exponent; n *= 2.0) {
+    evaluate(c, n, problem, other);
     newton(c, n, problem, max(tolerance, 1e-3 * size), other);
   }
+  evaluate(c, c.exponent, problem, other);
   newton(c, c.exponent, problem, tolerance, other);
   for (int i = 0; i < 5; ++i) {
-    point.stress[i] = select(converged, point.stress[i], other.stress[i]);
+    point.reduced[i] = select(converged, point.reduced[i], other.reduced[i]);
   }
-  point.g = select(converged, point.g, other.g);
-  return newton(c, c.exponent, problem, tolerance, point);
+  evaluate(c, c.exponent, problem, point);
+  return point.norm <= tolerance;
 }
 
 }  // namespace polyslip::material::simd
