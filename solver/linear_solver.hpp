@@ -2,41 +2,18 @@
 // The linear solver of a Newton step: FGMRES on the saddle-point system of the mixed element,
 //   [ A   B^T ] [du]   [ru]        A: tangent without the pressure's volume part
 //   [ B   -C  ] [dp] = [rp]        B_e = d V_e / d u,  C = diag(V_e / K)
-// preconditioned by an upper block triangle: p-multigrid (T10 -> vertices) on the augmented
-// A + weight sum_e (mu_e / V_e) b_e b_e^T, and a diagonal for the pressure Schur complement.
+// in its augmented form (B^T W times the second row added to the first: the same solution),
+//   [ A + B^T W B   B^T (1 - W C) ] [du]   [ru + B^T W rp]
+//   [ B             -C            ] [dp] = [rp           ]
+// preconditioned from the right by an upper block triangle: p-multigrid (T10 -> vertices) for
+// A + B^T W B and a diagonal for the pressure Schur complement.
 
-#include <mpi.h>
-#include <petscksp.h>
-
-#include <array>
-#include <cstdint>
 #include <memory>
-#include <vector>
+
+#include "solver/linear_blocks.hpp"
+#include "solver/multigrid.hpp"
 
 namespace polyslip::solver {
-
-/// Rows of this rank; PETSc's global numbering (3 dofs a node, nodes owned contiguously).
-struct LinearLayout {
-  MPI_Comm comm = MPI_COMM_SELF;
-  PetscInt local_nodes = 0;          ///< nodes this rank owns
-  PetscInt local_pressures = 0;      ///< elements this rank owns (0 for the displacement element)
-  /// For each owned node, the global nodes whose mean it is on the vertex level: itself twice for
-  /// a corner, the two ends of its edge for a mid node.
-  std::vector<std::array<PetscInt, 2>> parents;
-  std::vector<std::uint8_t> is_corner;     ///< [local_nodes]
-  std::vector<double> coordinates;         ///< [local_nodes][3], for the rigid-body modes
-  std::vector<std::uint8_t> constrained;   ///< [local_nodes][3] Dirichlet dofs
-};
-
-/// The blocks, assembled. Dirichlet rows and columns of A, A_augmented and columns of B are
-/// already eliminated (unit diagonal in A, zero columns in B).
-struct LinearBlocks {
-  Mat A = nullptr;            ///< BAIJ/AIJ, block size 3
-  Mat A_augmented = nullptr;  ///< A + weight * sum (mu_e/V_e) b b^T; = A for the displacement element
-  Mat B = nullptr;            ///< [pressures][3 nodes]; null for the displacement element
-  Vec C = nullptr;            ///< [pressures] V_e / K; null likewise
-  Vec schur = nullptr;        ///< [pressures] V_e (1/((1 + weight) mu_e) + 1/K), positive
-};
 
 struct LinearReport {
   int iterations = 0;
@@ -44,20 +21,33 @@ struct LinearReport {
   double relative_residual = 0;
 };
 
-/// Collective. Set-ups (multigrid hierarchy) are kept between solves until `drop_setup`, and
-/// rebuilt when `refresh` says that the blocks changed enough.
+/// How the system is solved; the defaults are the ones to use, the others are there to be compared.
+struct LinearSettings {
+  enum class Form { augmented, original, original_transformed };
+  Form form = Form::augmented;
+  Multigrid::Settings multigrid;
+};
+
+/// Collective. The structure of the multigrid hierarchy is kept from one set of blocks to the next,
+/// until `drop_setup`; after that the results are those of a new solver, bit for bit.
 class LinearSolver {
  public:
-  explicit LinearSolver(LinearLayout layout);
+  explicit LinearSolver(LinearLayout layout, const LinearSettings& settings = {});
   ~LinearSolver();
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
 
-  /// New matrices; rebuilds the preconditioner.
+  /// New matrices, of the same non-zero structure since the last `drop_setup`; rebuilds the
+  /// preconditioner. References are kept, not copies. Throws core::InternalError for blocks that
+  /// do not fit the layout.
   void set_blocks(const LinearBlocks& blocks);
-  /// Solves to ||r|| <= tolerance ||b|| (2-norm of the whole right side); x: [du; dp].
+  /// Solves to ||r|| <= tolerance ||b|| (2-norm of the whole residual and right side of the
+  /// augmented form) from a zero guess; x: [du; dp]. rp, dp: null for the displacement element.
+  /// Not converged: `converged` is false, du and dp hold the last iterate (NaN if the blocks hold
+  /// one).
   LinearReport solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance, int max_iterations);
   /// Forgets whatever a restart would not have, so that a run and its restart agree bit for bit.
+  /// The blocks have to be set again.
   void drop_setup();
 
  private:

@@ -1,0 +1,70 @@
+#include "solver/coarse_solver.hpp"
+
+#include <algorithm>
+
+namespace polyslip::solver {
+namespace {
+
+void attach_rigid_body_modes(Mat A, const std::vector<double>& coordinates) {
+  VecHandle x;
+  const auto n = static_cast<PetscInt>(coordinates.size());
+  check(VecCreateSeq(PETSC_COMM_SELF, n, x.out()));
+  check(VecSetBlockSize(x.get(), 3));
+  PetscScalar* values = nullptr;
+  check(VecGetArrayWrite(x.get(), &values));
+  std::copy(coordinates.begin(), coordinates.end(), values);
+  check(VecRestoreArrayWrite(x.get(), &values));
+  NullSpaceHandle modes;
+  check(MatNullSpaceCreateRigidBody(x.get(), modes.out()));
+  check(MatSetNearNullSpace(A, modes.get()));
+}
+
+}  // namespace
+
+void CoarseSolver::create(Mat A, const std::vector<double>& coordinates) {
+  matrix_ = MatHandle::share(A);
+  check(MatCreateVecs(A, rhs_.out(), solution_.out()));
+  check(KSPCreate(PETSC_COMM_SELF, ksp_.out()));
+  PC pc = nullptr;
+  check(KSPGetPC(ksp_.get(), &pc));
+  PetscInt dofs = 0;
+  check(MatGetSize(A, &dofs, nullptr));
+  if (dofs <= settings_.max_direct_dofs) {
+    check(KSPSetType(ksp_.get(), KSPPREONLY));
+    check(PCSetType(pc, PCLU));
+    check(PCFactorSetMatSolverType(pc, MATSOLVERPETSC));
+    check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+    return;
+  }
+  attach_rigid_body_modes(A, coordinates);
+  if (settings_.cycles > 1) {
+    check(KSPSetType(ksp_.get(), KSPRICHARDSON));
+    check(KSPSetNormType(ksp_.get(), KSP_NORM_NONE));
+    check(KSPSetTolerances(ksp_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
+                           settings_.cycles));
+  } else {
+    check(KSPSetType(ksp_.get(), KSPPREONLY));
+  }
+  check(PCSetType(pc, PCGAMG));
+  check(PCGAMGSetType(pc, PCGAMGAGG));
+  check(PCGAMGSetNSmooths(pc, 1));
+  PetscReal threshold = settings_.threshold;
+  check(PCGAMGSetThreshold(pc, &threshold, 1));
+  check(PCGAMGSetReuseInterpolation(pc, PETSC_TRUE));
+}
+
+void CoarseSolver::set_matrix(Mat A, const std::vector<double>& coordinates) {
+  if (matrix_.get() != A) create(A, coordinates);
+  check(KSPSetOperators(ksp_.get(), A, A));
+  check(KSPSetUp(ksp_.get()));
+}
+
+void CoarseSolver::solve(const double* b, double* x) {
+  check(VecPlaceArray(rhs_.get(), b));
+  check(VecPlaceArray(solution_.get(), x));
+  check(KSPSolve(ksp_.get(), rhs_.get(), solution_.get()));
+  check(VecResetArray(rhs_.get()));
+  check(VecResetArray(solution_.get()));
+}
+
+}  // namespace polyslip::solver

@@ -1,0 +1,38 @@
+#pragma once
+// Solver of the vertex level, on one rank.
+
+#include <vector>
+
+#include "solver/petsc_handle.hpp"
+
+namespace polyslip::solver {
+
+/// Approximate inverse of the vertex level's matrix: an LU factorisation of a small one, else a
+/// cycle of smoothed aggregation (PETSc's GAMG) with the rigid-body modes. Sequential.
+class CoarseSolver {
+ public:
+  struct Settings {
+    PetscInt max_direct_dofs = 3000;  ///< LU up to this size
+    int cycles = 1;                   ///< of the aggregation hierarchy
+    double threshold = 0.01;          ///< for dropping couplings when aggregating
+  };
+  CoarseSolver() = default;
+  explicit CoarseSolver(const Settings& settings) : settings_(settings) {}
+
+  /// Sets up, or renews the numbers of an earlier set-up of the same matrix (its structure kept).
+  /// coordinates: [nodes][3].
+  void set_matrix(Mat A, const std::vector<double>& coordinates);
+  /// x = approximate inverse times b; both [dofs].
+  void solve(const double* b, double* x);
+  void reset() { *this = CoarseSolver(settings_); }
+
+ private:
+  void create(Mat A, const std::vector<double>& coordinates);
+
+  Settings settings_;
+  MatHandle matrix_;
+  KspHandle ksp_;
+  VecHandle rhs_, solution_;
+};
+
+}  // namespace polyslip::solver
