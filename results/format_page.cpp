@@ -22,7 +22,7 @@ fails when the two differ.
 | `log.txt` | what happened |
 | `macro.csv` | the macroscopic curve, one row a step |
 | `results/state-0000.h5`, ... | stored states, one closed file each |
-| `results.xdmf` | all of them as one time series for ParaView (`Xdmf3ReaderT` or `XDMF Reader`) |
+| `results.xdmf` | all of them as one time series for ParaView (XDMF Reader or Xdmf3ReaderT) |
 | `results/index.json` | list of the stored states, from which `results.xdmf` is made |
 | `checkpoints/checkpoint-0000.h5`, ... | the last two checkpoints; files of the same type |
 | `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 |
@@ -71,8 +71,8 @@ constexpr const char* state_tail =
 
 `results.xdmf` shows `mesh` (its own in each state), displacement, grain, orientation, colour, g,
 slip, equivalent_strain, cauchy_stress (six columns in the order above) and pressure. Both sides of
-a remeshing have the same time; so that readers keep both, the later one carries the next larger
-floating-point number. For the paper's colours choose `colour` and switch off "Map Scalars".
+a remeshing have the same time; so that readers keep both, that of the later one is shown larger by
+1e-9 of itself. For the paper's colours choose `colour` and switch off "Map Scalars".
 
 )";
 

@@ -19,6 +19,9 @@ struct Attribute {
   const char* number;
 };
 
+/// Relative distance of two states at one time: readers take differences of round-off for none.
+constexpr double same_time_gap = 1e-9;
+
 // Four and six components have no XDMF type that keeps our order: matrices of one column.
 constexpr Attribute attributes[] = {
     {"displacement", "nodes/displacement", "Node", "Vector", 3, "Float\" Precision=\"8"},
@@ -75,8 +78,7 @@ std::string xdmf_text(const std::vector<StateRecord>& states) {
       "    <Grid Name=\"polyslip\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
   double last = -std::numeric_limits<double>::infinity();
   for (const auto& state : states) {
-    const double after = std::nextafter(last, std::numeric_limits<double>::infinity());
-    last = std::max(state.time, after);
+    last = state.time > last ? state.time : last + same_time_gap * std::abs(last);
     text += grid(state, last);
   }
   return text + "    </Grid>\n  </Domain>\n</Xdmf>\n";

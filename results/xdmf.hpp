@@ -17,8 +17,8 @@ struct StateRecord {
 };
 
 /// Text of the XDMF file (version 3; heavy data by paths relative to the run folder). Times are
-/// the states'; where two are equal (both sides of a remeshing) the later is the next larger
-/// double, so that readers keep both.
+/// the states'; where two are equal (both sides of a remeshing) the later is larger by 1e-9 of
+/// itself, so that readers keep both.
 std::string xdmf_text(const std::vector<StateRecord>& states);
 
 }  // namespace polyslip::results
