@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/options_check.hpp"
+#include "drivers/orientations.hpp"
 
 namespace polyslip::drivers {
 
@@ -285,15 +286,17 @@ Options read_options(Deck& deck, Purpose purpose) {
   Options options = declare(deck);
   check_options(deck, options, purpose);
   deck.finish();
+  if (options.orientations.file) grain_orientations(options);  // its faults show before any work
   return options;
 }
 
-std::string deck_reference_page() {
+std::string deck_reference() {
   Deck deck = Deck::from_text("", "deck.toml");
   declare(deck);
   return "# The deck\n\n"
          "A deck is a TOML file. This page is generated from the program "
-         "(`build/polyslip-deckref > docs/deck.md`);\na test fails when it is stale. Every key has "
+         "(`build/polyslip reference > docs/deck.md`);\na test fails when it is stale. Every key "
+         "has "
          "a "
          "default, an unknown key or table is an error,\nand the run folder keeps the deck as "
          "given "

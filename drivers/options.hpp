@@ -47,6 +47,6 @@ enum class Purpose { run, mesh };
 Options read_options(core::Deck& deck, Purpose purpose = Purpose::run);
 
 /// docs/deck.md: the reference of every key, from the declarations.
-std::string deck_reference_page();
+std::string deck_reference();
 
 }  // namespace polyslip::drivers

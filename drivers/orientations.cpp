@@ -95,8 +95,8 @@ std::vector<core::Quaternion> read_orientations(const std::string& path,
     orientations.push_back(orientation(x, convention, place));
   }
   if (static_cast<int>(orientations.size()) < count)
-    throw core::InputError(fmt::format("{}:{}: ends after {} orientations, must be {}, one a grain",
-                                       path, std::max(number, 1), orientations.size(), count));
+    throw core::InputError(fmt::format("{}:{}: ends after {} of {} orientations, one a grain", path,
+                                       std::max(number, 1), orientations.size(), count));
   return orientations;
 }
 

@@ -231,8 +231,8 @@ TEST(Options, EveryKeyHasUnitDefaultAndSentence) {
 }
 
 TEST(Options, TheReferencePageIsFresh) {
-  EXPECT_EQ(core::read_text(POLYSLIP_SOURCE_DIR "/docs/deck.md"), deck_reference_page())
-      << "run build/polyslip-deckref > docs/deck.md";
+  EXPECT_EQ(core::read_text(POLYSLIP_SOURCE_DIR "/docs/deck.md"), deck_reference())
+      << "run build/polyslip reference > docs/deck.md";
 }
 
 TEST(Options, TheFirstStepIsNoLongerThanTheLargest) {
@@ -299,9 +299,13 @@ TEST(Options, OrientationFiles) {
       std::filesystem::temp_directory_path() / ("polyslip_options_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   core::write_file((folder / "ori.txt").string(), "1 0 0 0\n");
+
   const std::string path = (folder / "deck.toml").string();
   const std::string section = "[orientations]\ndistribution = \"file\"\n";
-  EXPECT_EQ(error_of(section + "file = \"ori.txt\"\n", Purpose::run, path), "no error");
+  const std::string one_grain = "[polycrystal]\ngrains = 1\n";
+  EXPECT_EQ(error_of(section + "file = \"ori.txt\"\n" + one_grain, Purpose::run, path), "no error");
+  EXPECT_EQ(error_of(section + "file = \"ori.txt\"\n", Purpose::run, path),
+            (folder / "ori.txt").string() + ":1: ends after 1 of 30 orientations, one a grain");
   EXPECT_EQ(error_of(section + "file = \"none.txt\"\n", Purpose::run, path),
             path + ":3:8: [orientations] " + (folder / "none.txt").string() + ": no such file");
   EXPECT_EQ(error_of(section + "file = \"/\"\n", Purpose::run, path),
@@ -313,7 +317,7 @@ TEST(Options, OrientationFiles) {
       "deck.toml:2:8: [orientations] file is not used with distribution = \"uniform\"; remove "
       "it, or set distribution = \"file\"");
 
-  core::Deck deck = core::Deck::from_text(section + "file = \"ori.txt\"\n", path);
+  core::Deck deck = core::Deck::from_text(section + "file = \"ori.txt\"\n" + one_grain, path);
   read_options(deck);
   core::Deck resolved = core::Deck::from_text(deck.resolved(), "elsewhere/deck.resolved.toml");
   EXPECT_EQ(read_options(resolved).orientations.file, (folder / "ori.txt").string());

@@ -93,8 +93,8 @@ TEST_F(OrientationFile, ErrorsNameTheLine) {
 TEST_F(OrientationFile, ErrorsOfTheCount) {
   EXPECT_EQ(error_of("1 0 0 0\n1 0 0 0\n", 1),
             ":2: more orientations than the 1 grains of the deck");
-  EXPECT_EQ(error_of("1 0 0 0\n\n", 2), ":2: ends after 1 orientations, must be 2, one a grain");
-  EXPECT_EQ(error_of("", 2), ":1: ends after 0 orientations, must be 2, one a grain");
+  EXPECT_EQ(error_of("1 0 0 0\n\n", 2), ":2: ends after 1 of 2 orientations, one a grain");
+  EXPECT_EQ(error_of("", 2), ":1: ends after 0 of 2 orientations, one a grain");
 }
 
 TEST_F(OrientationFile, RoundedQuaternionsAreNormalised) {
