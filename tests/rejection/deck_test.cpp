@@ -1,0 +1,135 @@
+// Wrong decks: one clear line, exit code 2, the disk as it was, whatever verb reads them.
+
+#include <gtest/gtest.h>
+
+#include "rejection/program.hpp"
+
+namespace polyslip::tests {
+namespace {
+
+struct WrongDeck {
+  const char* name;
+  const char* text;
+  const char* line;
+};
+
+void PrintTo(const WrongDeck& deck, std::ostream* out) { *out << deck.name; }
+
+class Deck : public ::testing::TestWithParam<WrongDeck> {};
+
+TEST_P(Deck, IsRejectedByRunMeshAndCheck) {
+  const WrongDeck& deck = GetParam();
+  Sandbox sandbox;
+  sandbox.write("deck.toml", deck.text);
+  expect_rejection(sandbox, {"check", "deck.toml"}, deck.line);
+  expect_rejection(sandbox, {"run", "deck.toml", "--out", "out"}, deck.line);
+  expect_rejection(sandbox, {"mesh", "deck.toml", "--out", "out"}, deck.line);
+}
+
+const WrongDeck wrong_decks[] = {
+    {"UnknownKey", "[material]\nh_0 = 4.0\n",
+     "deck.toml:2:1: [material] unknown key 'h_0'; did you mean 'h0'?"},
+    {"KeyOfAnotherTable", "[mesh]\nfinal_strain = 0.5\n",
+     "deck.toml:2:1: [mesh] unknown key 'final_strain'; it belongs in [loading]"},
+    {"UnknownTable", "[materials]\nh0 = 4.0\n",
+     "deck.toml:1:2: unknown table [materials]; did you mean [material]?"},
+    {"KeyOutsideTables", "grains = 4\n",
+     "deck.toml:1:1: unknown key 'grains'; it belongs in [polycrystal]"},
+    {"WrongType", "[polycrystal]\ngrains = \"thirty\"\n",
+     "deck.toml:2:10: [polycrystal] grains = \"thirty\" must be an integer"},
+    {"FractionOfAGrain", "[polycrystal]\ngrains = 30.5\n",
+     "deck.toml:2:10: [polycrystal] grains = 30.5 must be an integer"},
+    {"NoGrains", "[polycrystal]\ngrains = 0\n",
+     "deck.toml:2:10: [polycrystal] grains = 0 must be >= 1 and <= 1000000"},
+    {"NegativeSize", "[mesh]\nelement_size = -0.5\n",
+     "deck.toml:2:16: [mesh] element_size = -0.5 must be >= 0.01 and <= 10"},
+    {"NotANumber", "[loading]\nstrain_rate = nan\n",
+     "deck.toml:2:15: [loading] strain_rate = nan must be finite"},
+    {"FlatBox", "[polycrystal]\ndomain = [1.0, 1.0, 0.0]\n",
+     "deck.toml:2:21: [polycrystal] domain: entry 3 = 0.0 must be > 0"},
+    {"TwoLengths", "[polycrystal]\ndomain = [1.0, 1.0]\n",
+     "deck.toml:2:10: [polycrystal] domain = [1.0, 1.0] must be a list of three numbers"},
+    {"UnknownMesher", "[mesh]\nmeshers = [\"gmsh\"]\n",
+     "deck.toml:2:12: [mesh] meshers: entry 1 = \"gmsh\" must be \"gmsh-hxt\", \"gmsh-delaunay\" "
+     "or \"netgen\""},
+    {"NoMesher", "[mesh]\nmeshers = []\n",
+     "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
+    {"OrderThree", "[mesh]\norder = 3\n", "deck.toml:2:9: [mesh] order = 3 must be >= 1 and <= 2"},
+    {"FinalStrainBelowARemeshingStrain",
+     "[loading]\nfinal_strain = 0.2\n[remeshing]\nat_strains = [0.3]\n",
+     "deck.toml:4:14: [remeshing] at_strains: 0.3 must be < final_strain = 0.2 (deck.toml:2:16)"},
+    {"RemeshingStrainsFall", "[remeshing]\nat_strains = [0.3, 0.2]\n",
+     "deck.toml:2:20: [remeshing] at_strains: entry 2 = 0.2 must be larger than the entry before "
+     "it"},
+    {"OutputBeyondTheEnd", "[output]\nat_strains = [0.7]\n",
+     "deck.toml:2:14: [output] at_strains: 0.7 must be <= final_strain = 0.6 (default)"},
+    {"UnstableCrystal", "[material]\nc11 = 50e3\n",
+     "deck.toml:2:7: [material] c11 = 50000 must be > c12 = 60900 (default): the crystal would be "
+     "unstable in shear"},
+    {"SaturationBelowStart", "[material]\ngs = 7.0\n",
+     "deck.toml:2:6: [material] gs = 7 must be > g0 = 8 (default)"},
+    {"MissingOrientationFile", "[orientations]\ndistribution = \"file\"\nfile = \"ori.txt\"\n",
+     "deck.toml:3:8: [orientations] ori.txt: no such file"},
+    {"OrientationFileNotUsed", "[orientations]\nfile = \"ori.txt\"\n",
+     "deck.toml:2:8: [orientations] file is not used with distribution = \"uniform\"; remove it, "
+     "or set distribution = \"file\""},
+    {"LoadingUnknown", "[loading]\ntype = \"tension\"\n",
+     "deck.toml:2:8: [loading] type = \"tension\" must be \"plane-strain-compression\""},
+};
+
+INSTANTIATE_TEST_SUITE_P(Wrong, Deck, ::testing::ValuesIn(wrong_decks),
+                         [](const auto& deck) { return std::string(deck.param.name); });
+
+TEST(DeckFile, MissingOrAFolder) {
+  Sandbox sandbox;
+  expect_rejection(sandbox, {"check", "deck.toml"}, "deck.toml: no such file");
+  expect_rejection(sandbox, {"run", "a/deck.toml", "--out", "out"}, "a/deck.toml: no such file");
+  expect_rejection(sandbox, {"check", "."}, ".: cannot read: Is a directory");
+}
+
+TEST(DeckFile, SyntaxIsOneLineWithItsPlace) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "[mesh]\norder = 2\norder = 2\n");
+  const Outcome outcome = run_polyslip({"check", "deck.toml"}, sandbox.path());
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err.rfind("deck.toml:3:", 0), 0u) << outcome.err;
+  EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+}
+
+TEST(DeckFile, LinearElementsAreForMeshingOnly) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "[mesh]\norder = 1\n");
+  const std::string line =
+      "deck.toml:2:9: [mesh] order = 1 is for `polyslip mesh` only; a run needs order = 2";
+  expect_rejection(sandbox, {"check", "deck.toml"}, line);
+  expect_rejection(sandbox, {"run", "deck.toml", "--out", "out"}, line);
+}
+
+TEST(OrientationFile, WrongLines) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml",
+                "[polycrystal]\ngrains = 2\n[orientations]\ndistribution = \"file\"\n"
+                "file = \"ori.txt\"\n");
+  const auto rejected = [&](const std::string& text, const std::string& line) {
+    sandbox.write("ori.txt", text);
+    expect_rejection(sandbox, {"run", "deck.toml", "--out", "out"}, line);
+  };
+  rejected("1 0 0 0\n", "ori.txt:1: ends after 1 of 2 orientations, one a grain");
+  rejected("1 0 0 0\n1 0 0 0\n1 0 0 0\n",
+           "ori.txt:3: more orientations than the 2 grains of the deck");
+  rejected("1 0 0 0\n1 0 0 nan\n", "ori.txt:2: nan is not finite");
+  rejected("1 0 0 0\n0.1 0.2 0.3\n", "ori.txt:2: 3 numbers, must be 4 (quaternion: w x y z)");
+}
+
+TEST(CorrectDeck, Passes) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "");
+  const auto before = tree(sandbox.path());
+  const Outcome outcome = run_polyslip({"check", "deck.toml"}, sandbox.path());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_EQ(tree(sandbox.path()), before);
+}
+
+}  // namespace
+}  // namespace polyslip::tests
