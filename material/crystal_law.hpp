@@ -21,6 +21,8 @@ struct MaterialOptions {
   double g0 = 8.0, gs = 12.0, h0 = 4.0;              ///< MPa
 };
 
+/// not_finite: NaN or infinity in state or gradient. not_converged: det f <= 0 or no solution
+/// found.
 enum class PointStatus : std::uint8_t { converged = 0, not_converged = 1, not_finite = 2 };
 
 /// Arrays of n_blocks blocks, lane innermost: array[block][component][lane].
@@ -50,12 +52,15 @@ class CrystalLaw {
   /// Initial state of one point (lane-free: layout().size() doubles).
   virtual void initial_state(const core::Quaternion& orientation, double* state) const = 0;
   /// Backward-Euler update of every block; no allocation, no throw. Threads: OpenMP over blocks.
+  /// A point whose status is not `converged` keeps its old state; its stress and tangent are zero.
+  /// No result depends on threads or on the other points of a block.
   virtual void update(const PointBlocks& blocks) const = 0;
 };
 
 /// FCC crystal with 12 {111}<110> systems, power law (eq. 8) and Voce hardening (eq. 9).
 /// Layout: "orientation" (4: w x y z), "elastic_strain" (5, crystal frame), "g" (1, MPa),
 /// "slip" (1, sum over systems of |gamma|), "equivalent_strain" (1, integral of sqrt(2/3 Dp:Dp)).
+/// Equations: docs/theory-material.md. Throws core::InputError if an option is out of its bounds.
 std::unique_ptr<CrystalLaw> make_fcc_law(const MaterialOptions& options);
 
 }  // namespace polyslip::material

@@ -1,4 +1,4 @@
-// The FCC crystal law: backward-Euler update and consistent tangent (theory page of the material).
+// The FCC crystal law: backward-Euler update and consistent tangent (docs/theory-material.md).
 
 #include <algorithm>
 
@@ -62,7 +62,7 @@ struct SolvedBlock {
   Vec5v stress;  ///< s = g x, lattice frame [MPa]
 };
 
-/// dstress/dh (theory page, "Tangent"), entry 9 i + 3 k + l at tangent + lanes (9 i + 3 k + l).
+/// dstress/dh, (M16) to (M18), entry 9 i + 3 k + l at tangent + lanes (9 i + 3 k + l).
 void write_tangent(const SlipConstants& c, const SolvedBlock& block, m4 valid, double* tangent) {
   const SlipJacobian derivative = jacobian(c, block.problem, block.point);
   const Factors factors = factorise(derivative.rows);

@@ -23,8 +23,8 @@ void check(const MaterialOptions& o) {
   require(o.c44 > 0, "c44", o.c44, "finite and positive (MPa)");
   require(o.reference_slip_rate > 0, "reference_slip_rate", o.reference_slip_rate,
           "finite and positive (1/s)");
-  require(o.rate_sensitivity >= 1e-3 && o.rate_sensitivity <= 1, "rate_sensitivity",
-          o.rate_sensitivity, "between 0.001 and 1 (slip rate ~ |tau/g|^(1/m))");
+  require(o.rate_sensitivity >= 0.003 && o.rate_sensitivity <= 1, "rate_sensitivity",
+          o.rate_sensitivity, "between 0.003 and 1 (slip rate ~ |tau/g|^(1/m))");
   require(o.g0 > 0, "g0", o.g0, "finite and positive (MPa)");
   require(o.gs >= o.g0, "gs", o.gs, "finite and not below g0 (MPa)");
   require(o.h0 >= 0, "h0", o.h0, "finite and not negative (MPa)");

@@ -1,6 +1,6 @@
 #pragma once
-// The implicit equations of slip at a point (theory page, "Equations of a step"): residual and
-// Jacobian, and Newton's method with a monotone line search. Private to material.
+// The implicit equations of slip at a point (docs/theory-material.md, (M8) to (M11), (M15)):
+// residual and Jacobian, and Newton's method with a monotone line search. Private to material.
 
 #include <array>
 
@@ -51,8 +51,8 @@ struct SlipJacobian {
   Vec5v rows[5];   ///< dresidual/dx
 };
 
-/// End-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma), written so
-/// that rounding never lowers g.
+/// (M9), end-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma),
+/// written so that rounding never lowers g.
 inline v4 voce_strength(const SlipConstants& c, v4 g_old, v4 total) {
   const v4 y = c.voce * total;
   return g_old + (c.gs - g_old) * (y / (1.0 + y));
@@ -71,7 +71,7 @@ inline void resolve(const SlipConstants& c, const Vec5v& x, v4* ratio) {
   }
 }
 
-/// The residual at point.reduced.
+/// The residual at point.reduced: (M8) to (M11).
 inline void evaluate(const SlipConstants& c, double n, const SlipProblem& problem,
                      SlipPoint& point) {
   v4 ratio[systems];
@@ -106,7 +106,7 @@ inline void evaluate(const SlipConstants& c, double n, const SlipProblem& proble
   point.norm = sqrt(dot(point.residual, point.residual));
 }
 
-/// The twin of evaluate: dDg_a = compliance_a P_a . dx, dw/dx = sum compliance_a q_a P_a,
+/// The twin of evaluate, (M15): dDg_a = compliance_a P_a . dx, dw/dx = sum compliance_a q_a P_a,
 /// dg/dx = g' sum |.|'_a P_a,
 /// dresidual/dx = g C'^-1 + (C'^-1 x) (dg/dx) + sum compliance_a P_a P_a - M dw/dx.
 /// Symmetric positive definite but for terms of the order of the strain increments.

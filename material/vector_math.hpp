@@ -1,7 +1,7 @@
 #pragma once
 // Four doubles at a time: loads, selection, and logarithm and exponential with their polynomials
-// (theory page, section "Power function"). Private to material: include it from .cpp files that are
-// compiled for the native machine.
+// (docs/theory-material.md, "Power function"). Private to material: include it from .cpp files that
+// are compiled for the native machine.
 
 #include <array>
 #include <cstdint>
