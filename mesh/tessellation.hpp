@@ -26,21 +26,30 @@ struct PolycrystalOptions {
 
 /// What a deck asks for in [regularisation].
 struct RegularisationOptions {
-  double max_edge_length = 0.13;      ///< l_max, for grains of unit mean volume; 0: none
-  double max_flatness_fault = 20.0;   ///< f_max [degrees]
+  double max_edge_length = 0.13;     ///< l_max, for grains of unit mean volume; 0: none
+  double max_flatness_fault = 20.0;  ///< f_max [degrees]; 0: none
+  /// Beyond the paper, which never lets two faces of a cell share a polyline of two edges: edges
+  /// below this share of l_max, and short ones opposite to a corner of a triangular face below this
+  /// angle [degrees], may be deleted although they leave one, for they spoil the mesh most. 0 and
+  /// 0: the paper's regularisation.
+  double polyline_share = 0.2;
+  double polyline_angle = 8.0;
 };
 
 /// A box [0, size] cut into cells with shared vertices, edges and faces.
 struct Tessellation {
   Topology topology;
-  core::Vec3 size{1, 1, 1};               ///< box, edge lengths; mean cell volume is 1
-  std::vector<core::Vec3> seeds;          ///< one a cell
-  std::vector<core::Vec3> vertices;       ///< [topology.vertex_count]
-  std::vector<Plane> face_planes;         ///< the face's plane in the Voronoi tessellation (eq. 2)
+  core::Vec3 size{1, 1, 1};          ///< box, edge lengths; mean cell volume is 1
+  std::vector<core::Vec3> seeds;     ///< one a cell
+  std::vector<core::Vec3> vertices;  ///< [topology.vertex_count]
+  std::vector<Plane> face_planes;    ///< the face's plane in the Voronoi tessellation (eq. 2)
   /// Master point of a face's interpolation triangles (section 2.1.2.2): -1 the barycentre of the
   /// face's vertices, i >= 0 the i-th vertex of its loop.
   std::vector<int> face_masters;
 
+  /// Throws InternalError unless the topology holds, vertices lie in the box and those of domain
+  /// faces exactly on them, faces are unfolded in projection along their mean normal, and cells
+  /// have positive volumes that add up to the box.
   void check() const;
 };
 
@@ -48,6 +57,8 @@ struct Tessellation {
 struct RegularisationReport {
   int edges_before = 0, short_before = 0, short_after = 0;
   int deleted = 0, loops = 0;
+  /// Short edges that stay: the faces would be too distorted; a cell would fold, lose its topology
+  /// or get a polyline.
   int refused_flatness = 0, refused_topology = 0;
   double max_flatness_fault = 0;  ///< degrees, over all faces afterwards
 };
@@ -55,13 +66,20 @@ struct RegularisationReport {
 /// Box of the right shape whose volume is the number of grains.
 core::Vec3 box_size(const PolycrystalOptions& options);
 
-/// Poisson-Voronoi tessellation of the box. Same seed, same result, on any machine or rank count.
+/// Poisson-Voronoi tessellation of the box. Faces are numbered in the order of their first cell,
+/// vertices and edges in that of their first face. Throws InputError as box_size. Same seed, same
+/// result, on any machine or rank count.
 Tessellation voronoi_tessellation(const PolycrystalOptions& options);
 
-/// Voronoi tessellation of given seeds, which lie inside the box [0, size].
+/// Voronoi tessellation of given seeds, which lie inside the box [0, size] (InputError otherwise,
+/// or if two coincide). Where more than four cells meet, vertices within 1e-10 of the cell size are
+/// one; seeds that miss a grid by about 1e-11 are moved onto it.
 Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const core::Vec3& size);
 
-/// Removes short edges (section 2.1.2 of the paper).
+/// Removes short edges (section 2.1.2 of the paper). Every cell remains a polyhedron that is seen
+/// as a whole from its centroid, the box keeps its corners, edges and faces, and face_planes stay
+/// those of the Voronoi tessellation. Doing it twice changes nothing. Throws InputError for options
+/// out of range.
 RegularisationReport regularise(Tessellation& tessellation, const RegularisationOptions& options);
 
 /// Largest angle [degrees] between the normals of a face's interpolation triangles.

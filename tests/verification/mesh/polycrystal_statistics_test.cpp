@@ -1,0 +1,161 @@
+// Statistics of Voronoi tessellations and of their regularisation against Quey, Dawson, Barbe
+// (2011), figs. 6 and 7, and against one tessellation of Neper 4.10.2. Inner grains are those
+// without a face on the domain boundary.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+
+#include "mesh/tessellation.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+struct InnerMeans {
+  long cells = 0;
+  double faces = 0, edges = 0, vertices = 0;
+
+  void add(const Tessellation& tessellation) {
+    const auto& t = tessellation.topology;
+    for (const auto& cell : t.cell_faces) {
+      if (std::any_of(cell.begin(), cell.end(), [&](int f) { return t.faces[f].domain_face >= 0; }))
+        continue;
+      std::set<int> e, v;
+      for (const int f : cell) {
+        e.insert(t.faces[f].edges.begin(), t.faces[f].edges.end());
+        for (const int i : t.face_vertices(f)) v.insert(i);
+      }
+      ++cells;
+      faces += static_cast<double>(cell.size());
+      edges += static_cast<double>(e.size());
+      vertices += static_cast<double>(v.size());
+    }
+  }
+  double mean_faces() const { return faces / static_cast<double>(cells); }
+  double mean_edges() const { return edges / static_cast<double>(cells); }
+  double mean_vertices() const { return vertices / static_cast<double>(cells); }
+};
+
+PolycrystalOptions cube(int grains, std::uint64_t seed) {
+  PolycrystalOptions options;
+  options.grains = grains;
+  options.seed = seed;
+  return options;
+}
+
+RegularisationOptions as_in_the_paper() {
+  RegularisationOptions options;
+  options.polyline_share = options.polyline_angle = 0;
+  return options;
+}
+
+TEST(PolycrystalStatistics, RegularisationOfTenCubesOfAThousandGrains) {
+  InnerMeans raw, paper, ours;
+  std::vector<double> faults;
+  for (int seed = 1; seed <= 10; ++seed) {
+    const auto t = voronoi_tessellation(cube(1000, seed));
+    raw.add(t);
+    auto p = t;
+    regularise(p, as_in_the_paper());
+    p.check();
+    paper.add(p);
+    for (int f = 0; f < static_cast<int>(p.topology.faces.size()); ++f)
+      faults.push_back(flatness_fault(p, f));
+    auto q = t;
+    regularise(q, {});
+    q.check();
+    ours.add(q);
+  }
+  ASSERT_GT(raw.cells, 4000);
+  RecordProperty("raw_faces", std::to_string(raw.mean_faces()));
+  RecordProperty("paper_faces", std::to_string(paper.mean_faces()));
+  RecordProperty("ours_faces", std::to_string(ours.mean_faces()));
+  RecordProperty("ours_edges", std::to_string(ours.mean_edges()));
+  EXPECT_NEAR(raw.mean_faces(), 15.1, 0.2);
+  EXPECT_NEAR(raw.mean_edges(), 39.1, 0.4);
+  EXPECT_NEAR(paper.mean_faces(), 13.7, 0.1);
+  EXPECT_NEAR(paper.mean_edges(), 31.8, 0.2);
+  EXPECT_NEAR(ours.mean_faces(), 13.7, 0.2);
+  EXPECT_NEAR(ours.mean_edges(), 31.8, 0.2);
+
+  // Fig. 6: between 0 and 20 degrees, 90 % of them below 6 or so; Neper's own: 2.3 in the mean.
+  std::sort(faults.begin(), faults.end());
+  double mean = 0;
+  for (const double f : faults) mean += f / static_cast<double>(faults.size());
+  const double p90 = faults[faults.size() * 9 / 10];
+  RecordProperty("fault_mean", std::to_string(mean));
+  RecordProperty("fault_p90", std::to_string(p90));
+  EXPECT_LT(mean, 2.4);
+  EXPECT_GT(mean, 1.0);
+  EXPECT_LT(p90, 7.0);
+  EXPECT_LE(faults.back(), 20 + 1e-9);
+}
+
+// Each vertex of a Poisson-Voronoi cell has three edges, so V = 2 F - 4 and E = 3 F - 6; the mean
+// number of faces of inner grains rises towards 2 + 48 pi^2 / 35 = 15.5355 with the cube's size.
+TEST(PolycrystalStatistics, PoissonVoronoiMeansRiseWithTheCube) {
+  const auto mean_of = [](int grains, int cubes) {
+    InnerMeans means;
+    for (int seed = 1; seed <= cubes; ++seed)
+      means.add(voronoi_tessellation(cube(grains, 100 + seed)));
+    EXPECT_NEAR(means.mean_edges(), 3 * means.mean_faces() - 6, 1e-9);
+    EXPECT_NEAR(means.mean_vertices(), 2 * means.mean_faces() - 4, 1e-9);
+    return means.mean_faces();
+  };
+  EXPECT_NEAR(mean_of(150, 100), 14.35, 0.2);
+  EXPECT_NEAR(mean_of(500, 20), 14.81, 0.2);
+  EXPECT_NEAR(mean_of(10000, 1), 15.32, 0.2);
+}
+
+TEST(PolycrystalStatistics, LargerLengthsTakeMoreFaces) {
+  const double lengths[] = {0.13, 0.26, 0.39, 0.52};
+  const double paper[] = {13.7, 12.3, 11.1, 10.2};  // fig. 7, 100,000 grains
+  double last = 15.0;
+  const auto t = voronoi_tessellation(cube(1000, 1));
+  for (int i = 0; i < 4; ++i) {
+    auto options = as_in_the_paper();
+    options.max_edge_length = lengths[i];
+    auto r = t;
+    regularise(r, options);
+    r.check();
+    InnerMeans means;
+    means.add(r);
+    EXPECT_LT(means.mean_faces(), last - 0.2);
+    last = means.mean_faces();
+    if (i < 2) {
+      EXPECT_NEAR(last, paper[i], 0.4);
+    }
+  }
+}
+
+// The seeds of Neper 4.10.2 for `-n 100 -id 1` (results only) and what it made of them.
+TEST(PolycrystalStatistics, NepersHundredGrains) {
+  std::ifstream file(POLYSLIP_SOURCE_DIR "/tests/verification/mesh/data/neper_n100_seeds.txt");
+  std::vector<Vec3> seeds;
+  for (Vec3 x; file >> x[0] >> x[1] >> x[2];) seeds.push_back(x);
+  ASSERT_EQ(seeds.size(), 100U);
+  auto t = voronoi_tessellation(seeds, Vec3::Constant(std::cbrt(100)));
+  EXPECT_EQ(t.topology.vertex_count, 575);
+  EXPECT_EQ(t.topology.edges.size(), 1146U);
+  EXPECT_EQ(t.topology.faces.size(), 672U);
+
+  const auto report = regularise(t, as_in_the_paper());
+  t.check();
+  EXPECT_EQ(report.short_before, 171);
+  InnerMeans means;
+  means.add(t);
+  EXPECT_EQ(means.cells, 21);
+  EXPECT_NEAR(means.mean_faces(), 13.9048, 0.1);  // 292 faces
+  EXPECT_NEAR(means.mean_edges(), 32.4762, 0.3);
+  EXPECT_NEAR(t.topology.vertex_count, 449, 10);
+  EXPECT_NEAR(static_cast<double>(t.topology.faces.size()), 628, 6);
+  EXPECT_NEAR(report.max_flatness_fault, 19.93, 0.07);
+}
+
+}  // namespace
+}  // namespace polyslip::mesh
