@@ -21,8 +21,8 @@ namespace {
 /// process meshed before.
 constexpr std::size_t batch_size = 25;
 
-constexpr double radius_ratio_floor = 0.1;
-constexpr double radius_ratio_step = 0.01;
+constexpr double radius_ratio_floor = 0.2;
+constexpr double radius_ratio_step = 0.02;
 
 /// A grain's candidates: the best so far and the faults, by mesher.
 struct Candidates {

@@ -32,18 +32,18 @@ struct GrainRequest {
 
 struct GrainResult {
   int grain = 0;
-  bool ok = false;                  ///< some mesher gave a valid mesh
-  VolumeMesh mesh;                  ///< the best: see MesherPool::mesh
-  std::string mesher;               ///< the winner
+  bool ok = false;     ///< some mesher gave a valid mesh
+  VolumeMesh mesh;     ///< the best: see MesherPool::mesh
+  std::string mesher;  ///< the winner
   double O = 0;
   std::vector<std::string> faults;  ///< one line for each failed candidate: mesher, grain, why
 };
 
 struct PoolOptions {
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
-  double element_size = 0.5;   ///< c_l
-  double timeout = 60;         ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
-  int jobs = 0;                ///< 0: one a core
+  double element_size = 0.5;  ///< c_l
+  double timeout = 60;        ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
+  int jobs = 0;               ///< 0: one a core
 };
 
 /// Worker processes that hold Gmsh and Netgen; the main program never links them. `start` must be
@@ -56,8 +56,8 @@ class MesherPool {
   MesherPool& operator=(const MesherPool&) = delete;
 
   /// Every mesher meshes every grain, and the best mesh of a grain wins: first by its worst radius
-  /// ratio as far as it is below 0.1 (in steps of 0.01), then by O (eq. 5), then by the order of the
-  /// meshers. O alone would take larger elements for a sliver.
+  /// ratio as far as it is below 0.2 (in steps of 0.02), then by O (eq. 5), then by the order of
+  /// the meshers. O alone would take larger elements for a sliver.
   ///
   /// Results in the order of the requests; the same for any number of jobs: the requests are cut
   /// into batches of a fixed size, each (batch, mesher) runs in a process of its own, and what is
