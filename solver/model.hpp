@@ -11,6 +11,7 @@
 
 #include "material/crystal_law.hpp"
 #include "mesh/snapshot.hpp"
+#include "solver/boundary.hpp"
 #include "solver/options.hpp"
 
 namespace polyslip::solver {
@@ -34,6 +35,10 @@ class Model {
   /// the same number of ranks.
   Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
         const LoadingOptions& loading, const SolverOptions& options,
+        std::function<void(const std::string&)> log);
+  /// The same under another boundary than the deck's.
+  Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+        Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
         std::function<void(const std::string&)> log);
   ~Model();
   Model(const Model&) = delete;

@@ -1,0 +1,312 @@
+#include "solver/discretisation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "solver/exchange.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+/// Elements whose matrices are computed together, by threads, before they are summed in order.
+constexpr int chunk = 256;
+
+VecHandle create_vector(MPI_Comm comm, PetscInt local_size) {
+  VecHandle v;
+  check(VecCreate(comm, v.out()));
+  check(VecSetSizes(v.get(), local_size, PETSC_DETERMINE));
+  check(VecSetType(v.get(), VECSTANDARD));
+  return v;
+}
+
+}  // namespace
+
+std::string describe(Evaluation evaluation) {
+  switch (evaluation) {
+    case Evaluation::fine:
+      return "fine";
+    case Evaluation::inverted:
+      return "an element turned inside out (det J <= 0)";
+    case Evaluation::point_failed:
+      return "the material update did not converge at a point";
+    case Evaluation::not_finite:
+      return "a force is not finite";
+  }
+  return "unknown";
+}
+
+Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& exchange,
+                               const material::CrystalLaw& law, bool mixed,
+                               const std::vector<double>& x, std::vector<double> reference_volume)
+    : local_(local),
+      exchange_(exchange),
+      law_(law),
+      mixed_(mixed),
+      bulk_(law.bulk_modulus()),
+      shear_(law.shear_modulus()),
+      pattern_(local, exchange),
+      gradient_pattern_(local),
+      reference_volumes_(std::move(reference_volume)) {
+  const std::size_t n = local.elements.size();
+  volumes_.assign(n, 0);
+  volume_gap_.assign(n, 0);
+  jacobian_ratios_.assign(n, 0);
+  volume_ratio_.assign(n * element_points, 1);
+  f_.assign(n * 9 * element_points, 0);
+  state_.assign(n * law.layout().size() * element_points, 0);
+  stress_.assign(n * 6 * element_points, 0);
+  tangent_.assign(n * 54 * element_points, 0);
+  mean_stress_.assign(n, {});
+  status_.assign(n * element_points, material::PointStatus::converged);
+  element_forces_.resize(n);
+  forces_.assign(static_cast<std::size_t>(local.local_nodes) * 3, 0);
+  values_.assign(pattern_.value_count(), 0);
+  A_augmented_ = pattern_.create();
+  if (mixed_) {
+    gradient_values_.assign(gradient_pattern_.value_count(), 0);
+    B_ = gradient_pattern_.create();
+    C_ = create_vector(local.comm, static_cast<PetscInt>(n));
+    W_ = create_vector(local.comm, static_cast<PetscInt>(n));
+    schur_ = create_vector(local.comm, static_cast<PetscInt>(n));
+  }
+  if (!reference_volumes_.empty() && reference_volumes_.size() != n)
+    throw core::InternalError("Discretisation: wrong number of reference volumes");
+  const bool compute = broadcast(local.comm, reference_volumes_.empty());
+  if (!compute) return;
+  int failed = 0;
+  reference_volumes_.resize(n);
+  for (std::size_t e = 0; e < n; ++e) {
+    ElementGeometry geometry;
+    if (!element_geometry(positions(static_cast<int>(e), x), geometry)) failed = 1;
+    reference_volumes_[e] = geometry.volume;
+  }
+  if (maximum(local.comm, failed) != 0)
+    throw core::InternalError("Discretisation: the mesh has an element with det J <= 0");
+}
+
+ElementPositions Discretisation::positions(int element, const std::vector<double>& x) const {
+  ElementPositions out;
+  for (int a = 0; a < element_nodes; ++a) {
+    const double* at = &x[3 * static_cast<std::size_t>(local_.elements[element][a])];
+    out[a] = {at[0], at[1], at[2]};
+  }
+  return out;
+}
+
+Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<double>& x,
+                                    const std::vector<double>& p, double time_step) {
+  x_ = x;
+  Evaluation outcome = kinematics(old);
+  if (outcome == Evaluation::fine) outcome = update_material(old, time_step);
+  outcome = static_cast<Evaluation>(maximum(local_.comm, static_cast<int>(outcome)));
+  if (outcome != Evaluation::fine) return outcome;
+  for (std::size_t e = 0; e < local_.elements.size(); ++e) {
+    if (mixed_) {
+      mean_stress_[e].fill(p[e]);
+      volume_gap_[e] = std::log(volumes_[e] / reference_volumes_[e]) - p[e] / bulk_;
+      continue;
+    }
+    for (std::size_t q = 0; q < element_points; ++q)
+      mean_stress_[e][q] = bulk_ * std::log(volume_ratio_[element_points * e + q]);
+  }
+  sum_forces();
+  double total = 0;
+  for (double r : forces_) total += std::abs(r);
+  for (double g : volume_gap_) total += std::abs(g);
+  const int bad = std::isfinite(total) ? 0 : 1;
+  return maximum(local_.comm, bad) != 0 ? Evaluation::not_finite : Evaluation::fine;
+}
+
+Evaluation Discretisation::kinematics(const Configuration& old) {
+  int failed = 0;
+  const int n = local_.element_count();
+#pragma omp parallel for schedule(static) reduction(max : failed)
+  for (int e = 0; e < n; ++e) {
+    ElementGeometry geometry;
+    double* f = &f_[static_cast<std::size_t>(e) * 9 * element_points];
+    if (!element_geometry(positions(e, x_), geometry) ||
+        !relative_gradients(positions(e, old.x), geometry, f)) {
+      failed = 1;
+      continue;
+    }
+    volumes_[e] = geometry.volume;
+    jacobian_ratios_[e] = geometry.min_jacobian_ratio;
+    if (mixed_) continue;
+    for (std::size_t q = 0; q < element_points; ++q) {
+      const auto F = [&](int i, int j) { return f[(3 * i + j) * element_points + q]; };
+      const double det = F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) -
+                         F(0, 1) * (F(1, 0) * F(2, 2) - F(1, 2) * F(2, 0)) +
+                         F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
+      const std::size_t at = static_cast<std::size_t>(e) * element_points + q;
+      volume_ratio_[at] = old.volume_ratio[at] * det;
+    }
+  }
+  return failed != 0 ? Evaluation::inverted : Evaluation::fine;
+}
+
+Evaluation Discretisation::update_material(const Configuration& old, double time_step) {
+  material::PointBlocks blocks;
+  blocks.n_blocks = local_.element_count();
+  blocks.time_step = time_step;
+  blocks.relative_gradient = f_.data();
+  blocks.state_old = old.state.data();
+  blocks.state_new = state_.data();
+  blocks.stress = stress_.data();
+  blocks.tangent = tangent_.data();
+  blocks.status = status_.data();
+  law_.update(blocks);
+  const bool fine = std::all_of(status_.begin(), status_.end(), [](material::PointStatus s) {
+    return s == material::PointStatus::converged;
+  });
+  return fine ? Evaluation::fine : Evaluation::point_failed;
+}
+
+void Discretisation::sum_forces() {
+  const int n = local_.element_count();
+#pragma omp parallel for schedule(static)
+  for (int e = 0; e < n; ++e) {
+    ElementGeometry geometry;
+    element_geometry(positions(e, x_), geometry);
+    element_forces(geometry, &stress_[static_cast<std::size_t>(e) * 6 * element_points],
+                   mean_stress_[e], element_forces_[e]);
+  }
+  std::fill(forces_.begin(), forces_.end(), 0.0);
+  for (int e = 0; e < n; ++e)
+    for (int a = 0; a < element_nodes; ++a)
+      for (int i = 0; i < 3; ++i)
+        forces_[3 * static_cast<std::size_t>(local_.elements[e][a]) + i] +=
+            element_forces_[e][a][i];
+  exchange_.add_ghosts(forces_, 3);
+}
+
+void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
+                                    ElementMatrix& matrix, ElementForces& b,
+                                    double& modulus) const {
+  const auto e = static_cast<std::size_t>(element);
+  ElementGeometry geometry;
+  element_geometry(positions(element, x_), geometry);
+  const double* tangent = &tangent_[e * 54 * element_points];
+  element_tangent(geometry, &stress_[e * 6 * element_points], tangent, mean_stress_[e],
+                  mixed_ ? 0 : bulk_, matrix);
+  element_volume_gradient(geometry, b);
+  modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
+
+  std::array<double, 30> keep{};
+  for (int a = 0; a < element_nodes; ++a)
+    for (int i = 0; i < 3; ++i) {
+      const auto dof = 3 * static_cast<std::size_t>(local_.elements[element][a]) + i;
+      keep[3 * a + i] = constrained[dof] ? 0 : 1;
+      b[a][i] *= keep[3 * a + i];
+    }
+  const double weight = mixed_ ? augmentation(modulus) / geometry.volume : 0;
+  const double* flat_b = &b[0][0];
+  for (int row = 0; row < 30; ++row) {
+    double* A = &matrix[0][0][0][0] + 30 * row;
+    for (int c = 0; c < 30; ++c)
+      A[c] = A[c] * keep[row] * keep[c] + weight * flat_b[row] * flat_b[c];
+  }
+}
+
+double Discretisation::augmentation(double modulus) const {
+  return std::min(augmentation_weight * modulus, bulk_);
+}
+
+LinearBlocks Discretisation::assemble(const std::vector<std::uint8_t>& constrained) {
+  const int n = local_.element_count();
+  std::vector<ElementMatrix> matrices(chunk);
+  std::vector<ElementForces> b(chunk);
+  std::vector<double> modulus(static_cast<std::size_t>(n));
+  std::fill(values_.begin(), values_.end(), 0.0);
+  for (int begin = 0; begin < n; begin += chunk) {
+    const int count = std::min(chunk, n - begin);
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < count; ++i)
+      compute_matrix(begin + i, constrained, matrices[i], b[i], modulus[begin + i]);
+    for (int i = 0; i < count; ++i) {
+      pattern_.add(begin + i, matrices[i], values_);
+      if (mixed_) gradient_pattern_.set(begin + i, b[i], gradient_values_);
+    }
+  }
+  LinearBlocks blocks;
+  pattern_.finish(constrained, values_);
+  pattern_.copy(values_, A_augmented_.get());
+  blocks.A_augmented = A_augmented_.get();
+  if (!mixed_) {
+    blocks.A = A_augmented_.get();
+    return blocks;
+  }
+  gradient_pattern_.copy(gradient_values_, B_.get());
+  PetscScalar *C = nullptr, *W = nullptr, *S = nullptr;
+  check(VecGetArrayWrite(C_.get(), &C));
+  check(VecGetArrayWrite(W_.get(), &W));
+  check(VecGetArrayWrite(schur_.get(), &S));
+  for (int e = 0; e < n; ++e) {
+    C[e] = volumes_[e] / bulk_;
+    W[e] = augmentation(modulus[e]) / volumes_[e];
+    S[e] = C[e] + (1 - W[e] * C[e]) / (modulus[e] / volumes_[e] + W[e]);
+  }
+  check(VecRestoreArrayWrite(C_.get(), &C));
+  check(VecRestoreArrayWrite(W_.get(), &W));
+  check(VecRestoreArrayWrite(schur_.get(), &S));
+  blocks.B = B_.get();
+  blocks.C = C_.get();
+  blocks.W = W_.get();
+  blocks.schur = schur_.get();
+  return blocks;
+}
+
+void Discretisation::accept(const std::vector<double>& x, const std::vector<double>& p,
+                            Configuration& configuration) const {
+  configuration.x = x;
+  configuration.p = p;
+  configuration.state = state_;
+  configuration.volume_ratio = volume_ratio_;
+}
+
+std::vector<double> Discretisation::cauchy_stress() const {
+  const double half_sqrt2 = std::sqrt(0.5);
+  std::vector<double> out(local_.elements.size() * element_points * 6);
+  for (std::size_t e = 0; e < local_.elements.size(); ++e)
+    for (std::size_t q = 0; q < element_points; ++q)
+      for (std::size_t c = 0; c < 6; ++c) {
+        const double s = stress_[(6 * e + c) * element_points + q];
+        out[(element_points * e + q) * 6 + c] = c < 3 ? s + mean_stress_[e][q] : half_sqrt2 * s;
+      }
+  return out;
+}
+
+std::vector<double> Discretisation::element_stress() const {
+  const auto points = cauchy_stress();
+  std::vector<double> out(local_.elements.size() * 6, 0);
+  for (std::size_t e = 0; e < local_.elements.size(); ++e) {
+    ElementGeometry geometry;
+    element_geometry(positions(static_cast<int>(e), x_), geometry);
+    for (std::size_t q = 0; q < element_points; ++q)
+      for (std::size_t c = 0; c < 6; ++c)
+        out[6 * e + c] += geometry.weights[q] / geometry.volume *
+                          points[(element_points * e + q) * 6 + c];
+  }
+  return out;
+}
+
+std::array<double, 6> Discretisation::mean_stress() const {
+  std::array<double, 7> sums{};
+  const auto stress = element_stress();
+  for (std::size_t e = 0; e < local_.elements.size(); ++e) {
+    for (std::size_t c = 0; c < 6; ++c) sums[c] += volumes_[e] * stress[6 * e + c];
+    sums[6] += volumes_[e];
+  }
+  sum(local_.comm, sums.data(), 7);
+  std::array<double, 6> mean{};
+  for (std::size_t c = 0; c < 6; ++c) mean[c] = sums[c] / sums[6];
+  return mean;
+}
+
+double Discretisation::min_jacobian_ratio() const {
+  double smallest = 1;
+  for (double r : jacobian_ratios_) smallest = std::min(smallest, r);
+  return minimum(local_.comm, smallest);
+}
+
+}  // namespace polyslip::solver

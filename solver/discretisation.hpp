@@ -1,0 +1,102 @@
+#pragma once
+// Forces, volumes and tangent of this rank's elements, summed over the mesh.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "material/crystal_law.hpp"
+#include "solver/block_matrix.hpp"
+#include "solver/element.hpp"
+#include "solver/linear_blocks.hpp"
+#include "solver/partition.hpp"
+
+namespace polyslip::solver {
+
+/// The body at one instant, as far as this rank knows it.
+struct Configuration {
+  std::vector<double> x;             ///< [local_nodes][3] positions
+  std::vector<double> p;             ///< [elements] mean stress [MPa], mixed element
+  std::vector<double> volume_ratio;  ///< [elements][4] det F of the point, displacement element
+  std::vector<double> state;         ///< [elements][law size][4] of the material
+};
+
+/// Why a configuration cannot be evaluated.
+enum class Evaluation : int { fine = 0, inverted = 1, point_failed = 2, not_finite = 3 };
+std::string describe(Evaluation evaluation);
+
+/// Weight of the augmentation by the elements' volume gradients, relative to the local tangent
+/// shear modulus (measured optimum: design notes in docs/theory-solver.md).
+inline constexpr double augmentation_weight = 4;
+
+class Discretisation {
+ public:
+  /// Collective. reference_volume: [elements] V0, empty: the volumes of x.
+  Discretisation(const LocalMesh& local, const NodeExchange& exchange,
+                 const material::CrystalLaw& law, bool mixed, const std::vector<double>& x,
+                 std::vector<double> reference_volume);
+
+  /// Stresses, new state, forces and volume residuals at positions x and mean stresses p, reached
+  /// from `old` in `time_step` [s]. Same answer on every rank. Unless `fine`, the results below are
+  /// unusable. Collective.
+  Evaluation evaluate(const Configuration& old, const std::vector<double>& x,
+                      const std::vector<double>& p, double time_step);
+
+  /// Tangent blocks at the last evaluation, Dirichlet dofs (constrained: [local_nodes][3])
+  /// eliminated. Valid until the next call. Collective.
+  LinearBlocks assemble(const std::vector<std::uint8_t>& constrained);
+
+  /// Takes the last evaluation's state as `configuration`'s.
+  void accept(const std::vector<double>& x, const std::vector<double>& p,
+              Configuration& configuration) const;
+
+  // Results of the last evaluation.
+  /// [local_nodes][3] internal forces, complete on owned nodes
+  const std::vector<double>& forces() const { return forces_; }
+  /// [elements] ln(V/V0) - p/K; zeros for the displacement element
+  const std::vector<double>& volume_gap() const { return volume_gap_; }
+  const std::vector<double>& volumes() const { return volumes_; }
+  const std::vector<double>& reference_volumes() const { return reference_volumes_; }
+  /// [elements][4][6] Cauchy stress xx yy zz yz zx xy, plain components [MPa]
+  std::vector<double> cauchy_stress() const;
+  /// [elements][6] its mean over the element, by the same quadrature
+  std::vector<double> element_stress() const;
+  /// Mean over the body. Collective.
+  std::array<double, 6> mean_stress() const;
+  /// min det J / mean det J of the worst element. Collective.
+  double min_jacobian_ratio() const;
+
+  bool mixed() const { return mixed_; }
+  const LocalMesh& local() const { return local_; }
+  const NodeExchange& exchange() const { return exchange_; }
+  const material::CrystalLaw& law() const { return law_; }
+
+ private:
+  const LocalMesh& local_;
+  const NodeExchange& exchange_;
+  const material::CrystalLaw& law_;
+  bool mixed_;
+  double bulk_, shear_;
+  BlockPattern pattern_;
+  VolumeGradientMatrix gradient_pattern_;
+  MatHandle A_augmented_, B_;
+  VecHandle C_, W_, schur_;
+  std::vector<double> values_, gradient_values_;
+  std::vector<double> reference_volumes_, volumes_, volume_gap_, jacobian_ratios_, volume_ratio_;
+  std::vector<double> x_, f_, state_, stress_, tangent_, forces_;
+  std::vector<std::array<double, element_points>> mean_stress_;  // [elements] of the points
+  std::vector<material::PointStatus> status_;
+  std::vector<ElementForces> element_forces_;
+
+  ElementPositions positions(int element, const std::vector<double>& x) const;
+  Evaluation kinematics(const Configuration& old);
+  Evaluation update_material(const Configuration& old, double time_step);
+  void sum_forces();
+  /// W V of an element [MPa]: no more than K, where W = 1/C condenses the pressure exactly.
+  double augmentation(double modulus) const;
+  /// A_e + W b b^T and b, constrained dofs at zero; the shear modulus of element_shear_modulus.
+  void compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
+                      ElementMatrix& matrix, ElementForces& b, double& modulus) const;
+};
+
+}  // namespace polyslip::solver

@@ -1,0 +1,348 @@
+#include "solver/model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "solver/discretisation.hpp"
+#include "solver/exchange.hpp"
+#include "solver/newton.hpp"
+#include "solver/partition.hpp"
+#include "solver/snapshot_fields.hpp"
+#include "solver/step_control.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+using core::Transport;
+using mesh::Location;
+
+/// The stored partition if it was made for this number of ranks, else a new one. On rank 0.
+std::vector<int> element_ranks(const mesh::Snapshot& snapshot, int ranks) {
+  const auto stored = values_of(snapshot, field::partition, Location::element);
+  const auto made_for = snapshot.history.find(field::partition_ranks);
+  if (!stored.empty() && made_for != snapshot.history.end() && made_for->second.size() == 1 &&
+      made_for->second[0] == ranks) {
+    return {stored.begin(), stored.end()};
+  }
+  return partition_elements(snapshot.mesh, ranks);
+}
+
+std::vector<double> flat(const std::vector<core::Vec3>& points) {
+  std::vector<double> out;
+  out.reserve(3 * points.size());
+  for (const auto& p : points) out.insert(out.end(), {p[0], p[1], p[2]});
+  return out;
+}
+
+core::Vec3 box_size(MPI_Comm comm, const mesh::Snapshot& snapshot) {
+  core::Vec3 size;
+  for (int i = 0; i < 3; ++i) size[i] = broadcast(comm, snapshot.mesh.size[i]);
+  return size;
+}
+
+}  // namespace
+
+struct Model::Impl {
+  MPI_Comm comm;
+  const material::CrystalLaw& law;
+  LoadingOptions loading;
+  Boundary boundary;
+  std::function<void(const std::string&)> log;
+  bool root, mixed;
+  mesh::Snapshot base;  // rank 0: mesh and what else came with the snapshot
+  std::vector<int> ranks;  // rank 0: of each element
+  Distribution distribution;
+  NodeExchange exchange;
+  Configuration now;
+  std::vector<double> displacement;                     // [local_nodes][3]
+  std::vector<double> displacement_rate, pressure_rate;  // of the predictor, per unit strain
+  std::vector<double> element_stress, point_stress, volumes;
+  double strain = 0, time = 0;
+  StepControl control;
+  std::unique_ptr<Discretisation> discretisation;
+  std::unique_ptr<NewtonSolver> newton;
+
+  Impl(MPI_Comm c, const mesh::Snapshot& snapshot, const material::CrystalLaw& l, Boundary b,
+       const LoadingOptions& load, const SolverOptions& options,
+       std::function<void(const std::string&)> log_line)
+      : comm(c),
+        law(l),
+        loading(load),
+        boundary(std::move(b)),
+        log(std::move(log_line)),
+        root(rank_of(c) == 0),
+        mixed(options.element == "mixed"),
+        base(checked(snapshot)),
+        ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
+        distribution(c, base.mesh, ranks),
+        exchange(distribution.local()),
+        control(load) {
+    if (!mixed && options.element != "displacement")
+      throw core::InternalError("Model: no element \"" + options.element + "\"");
+    strain = broadcast(comm, base.strain);
+    time = broadcast(comm, base.time);
+    read_configuration();
+    read_history();
+    discretisation = std::make_unique<Discretisation>(
+        distribution.local(), exchange, law, mixed, now.x,
+        read(field::reference_volume, Location::element, 1));
+    if (volumes.empty()) volumes = discretisation->reference_volumes();
+    newton = std::make_unique<NewtonSolver>(*discretisation, boundary, options, now.x);
+  }
+
+  /// The snapshot on rank 0, after a check that every rank hears of.
+  mesh::Snapshot checked(const mesh::Snapshot& snapshot) const {
+    on_root(comm, [&] { check_fields(snapshot, law); });
+    return root ? snapshot : mesh::Snapshot{};
+  }
+
+  /// A field of the snapshot on this rank's entities; empty, on every rank, if there is none.
+  std::vector<double> read(const std::string& name, Location location, int components) const {
+    const auto values = root ? values_of(base, name, location) : std::vector<double>{};
+    if (!broadcast(comm, !values.empty())) return {};
+    const int points = location == Location::quadrature_point ? element_points : 1;
+    return location == Location::node
+               ? distribution.scatter_nodes(values, components)
+               : distribution.scatter_elements(values, components * points);
+  }
+
+  void read_configuration() {
+    const auto& local = distribution.local();
+    const std::size_t elements = local.elements.size();
+    now.x = distribution.scatter_nodes(root ? flat(base.mesh.nodes) : std::vector<double>{}, 3);
+    now.state = distribution.scatter_elements(
+        root ? state_blocks(base, law) : std::vector<double>{},
+        law.layout().size() * element_points);
+    // Without the volumes of zero stress there is no pressure: a fresh or remeshed body.
+    const bool stressed =
+        broadcast(comm, base.find(field::reference_volume, Location::element) != nullptr);
+    const auto take = [&](const std::string& name, Location at, int components, std::size_t count,
+                          double fallback) {
+      auto values = stressed ? read(name, at, components) : std::vector<double>{};
+      if (values.empty()) values.assign(count, fallback);
+      return values;
+    };
+    now.p = take(field::pressure, Location::element, 1, elements, 0);
+    for (double& p : now.p) p = -p;
+    now.volume_ratio = take(field::volume_ratio, Location::quadrature_point, 1,
+                            elements * element_points, 1);
+    element_stress = take(field::cauchy_stress, Location::element, 6, elements * 6, 0);
+    point_stress = take(field::cauchy_stress, Location::quadrature_point, 6,
+                        elements * element_points * 6, 0);
+    volumes = stressed ? read(field::volume, Location::element, 1) : std::vector<double>{};
+    displacement = read(field::displacement, Location::node, 3);
+    if (displacement.empty()) displacement.assign(now.x.size(), 0);
+  }
+
+  void read_history() {
+    displacement_rate = read(field::displacement_rate, Location::node, 3);
+    if (displacement_rate.empty()) displacement_rate.assign(now.x.size(), 0);
+    pressure_rate = read(field::pressure_rate, Location::element, 1);
+    if (pressure_rate.empty()) pressure_rate.assign(now.p.size(), 0);
+    const auto stored = base.history.find(field::step_history);
+    const bool found = broadcast(comm, root && stored != base.history.end());
+    if (!found) return;
+    control.restore({broadcast(comm, root && stored->second.size() == 1 ? stored->second[0] : 0)});
+  }
+
+  /// Positions of the homogeneous motion from the current strain to `end`.
+  std::vector<double> homogeneous(double end) const {
+    const core::Mat3 F = boundary.mean_gradient(end) * boundary.mean_gradient(strain).inverse();
+    std::vector<double> x(now.x.size());
+    for (std::size_t n = 0; n < x.size(); n += 3) {
+      const core::Vec3 moved = F * core::Vec3(now.x[n], now.x[n + 1], now.x[n + 2]);
+      for (std::size_t i = 0; i < 3; ++i) x[n + i] = moved[static_cast<Eigen::Index>(i)];
+    }
+    return x;
+  }
+
+  /// Homogeneous motion, plus the last step's departure from it at the same rate; prescribed dofs
+  /// exact.
+  std::vector<double> predict_positions(double end) const {
+    auto x = homogeneous(end);
+    const auto& local = distribution.local();
+    for (std::size_t dof = 0; dof < x.size(); ++dof) {
+      const std::size_t n = dof / 3;
+      if (!newton->constrained()[dof]) {
+        x[dof] += displacement_rate[dof] * (end - strain);
+        continue;
+      }
+      const core::Vec3 initial(now.x[3 * n] - displacement[3 * n],
+                               now.x[3 * n + 1] - displacement[3 * n + 1],
+                               now.x[3 * n + 2] - displacement[3 * n + 2]);
+      x[dof] = boundary.position(local.node_faces[n], static_cast<int>(dof % 3), initial, end);
+    }
+    return x;
+  }
+
+  void accept(const std::vector<double>& x, const std::vector<double>& p, double end) {
+    const double increment = end - strain;
+    const auto plain = homogeneous(end);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      displacement_rate[i] = (x[i] - plain[i]) / increment;
+      displacement[i] += x[i] - now.x[i];
+    }
+    for (std::size_t e = 0; e < p.size(); ++e) pressure_rate[e] = (p[e] - now.p[e]) / increment;
+    discretisation->accept(x, p, now);
+    element_stress = discretisation->element_stress();
+    point_stress = discretisation->cauchy_stress();
+    volumes = discretisation->volumes();
+    time += increment / loading.strain_rate;
+    strain = end;
+    control.accepted(increment);
+  }
+
+  StepRecord record(double increment, const StepRecord& counters) const {
+    StepRecord r = counters;
+    r.strain = strain;
+    r.time = time;
+    r.step_size = increment;
+    r.stress = discretisation->mean_stress();
+    r.face_forces = face_forces(distribution.local(), boundary, discretisation->forces());
+    r.fx_x1 = r.face_forces[1][0];
+    r.fy_y1 = r.face_forces[3][1];
+    r.fz_z1 = r.face_forces[5][2];
+    r.min_jacobian_ratio = discretisation->min_jacobian_ratio();
+    return r;
+  }
+
+  void say(const std::string& line) const {
+    if (root && log) log(line);
+  }
+
+  StepRecord step(double target) {
+    if (!(target > strain))
+      throw core::InternalError(fmt::format("Model::step: {} is not beyond {}", target, strain));
+    StepRecord counters;
+    for (;;) {
+      const double end = control.next_end(strain, target);
+      const double increment = end - strain;
+      auto x = predict_positions(end);
+      auto p = now.p;
+      for (std::size_t e = 0; e < p.size(); ++e) p[e] += pressure_rate[e] * increment;
+      const NewtonProblem problem{now, increment / loading.strain_rate, increment, {}};
+      const NewtonReport report = newton->solve(problem, x, p);
+      counters.newton_iterations += report.iterations;
+      counters.linear_iterations += report.linear_iterations;
+      if (report.converged) {
+        accept(x, p, end);
+        return record(increment, counters);
+      }
+      ++counters.cuts;
+      const bool go_on = control.cut(increment);
+      say(fmt::format("strain {:.6g}: step of {:.3g} cut: {}", strain, increment, report.reason));
+      if (!go_on)
+        throw core::RecoverableError(
+            fmt::format("strain {:.6g}: the step fell below min_strain_increment = {:g}; last "
+                        "failure: {}",
+                        strain, loading.min_strain_increment, report.reason));
+    }
+  }
+
+  void add(mesh::Snapshot& out, const std::string& name, Location location, int components,
+           const std::string& unit, Transport transport, const std::string& description,
+           std::vector<double> values) const {
+    if (root)
+      put(out, mesh::Field{name, location, components, unit, transport, description,
+                           std::move(values)});
+  }
+
+  mesh::Snapshot snapshot() const {
+    mesh::Snapshot out = base;
+    const auto nodes = [&](const std::vector<double>& v) { return distribution.gather_nodes(v, 3); };
+    const auto elements = [&](const std::vector<double>& v, int components) {
+      return distribution.gather_elements(v, components);
+    };
+    const auto x = nodes(now.x);
+    const auto state = elements(now.state, law.layout().size() * element_points);
+    if (root) {
+      for (std::size_t n = 0; n < out.mesh.nodes.size(); ++n)
+        out.mesh.nodes[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
+      put_state(out, law, state);
+      out.strain = strain;
+      out.time = time;
+      out.history[field::step_history] = control.history();
+      out.history[field::partition_ranks] = {static_cast<double>(size_of(comm))};
+    }
+    add(out, field::displacement, Location::node, 3, "L", Transport::shape_functions,
+        "from the initial position", nodes(displacement));
+    add(out, field::reference_volume, Location::element, 1, "L^3", Transport::not_carried,
+        "volume at zero pressure", elements(discretisation->reference_volumes(), 1));
+    add(out, field::volume, Location::element, 1, "L^3", Transport::not_carried,
+        "volume, four-point quadrature", elements(volumes, 1));
+    add(out, field::cauchy_stress, Location::element, 6, "MPa", Transport::reset_to_zero,
+        "mean Cauchy stress: xx yy zz yz zx xy", elements(element_stress, 6));
+    add(out, field::cauchy_stress, Location::quadrature_point, 6, "MPa", Transport::reset_to_zero,
+        "Cauchy stress: xx yy zz yz zx xy", elements(point_stress, 6 * element_points));
+    add(out, field::pressure, Location::element, 1, "MPa", Transport::reset_to_zero,
+        "minus the mean of the normal stresses", elements(pressures(), 1));
+    add(out, field::partition, Location::element, 1, "1", Transport::not_carried,
+        "rank that works on the element", {ranks.begin(), ranks.end()});
+    add(out, field::displacement_rate, Location::node, 3, "L", Transport::not_carried,
+        "predictor: departure from the homogeneous motion per unit strain",
+        nodes(displacement_rate));
+    add(out, field::pressure_rate, Location::element, 1, "MPa", Transport::not_carried,
+        "predictor: mean stress per unit strain", elements(pressure_rate, 1));
+    if (!mixed)
+      add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
+          "volume over volume at zero pressure", elements(now.volume_ratio, element_points));
+    return out;
+  }
+
+  std::vector<double> pressures() const {
+    std::vector<double> out(now.p.size());
+    for (std::size_t e = 0; e < out.size(); ++e) {
+      const double* s = &element_stress[6 * e];
+      out[e] = mixed ? -now.p[e] : -(s[0] + s[1] + s[2]) / 3;
+    }
+    return out;
+  }
+};
+
+Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+             const LoadingOptions& loading, const SolverOptions& options,
+             std::function<void(const std::string&)> log)
+    : Model(comm, snapshot, law,
+            make_boundary(loading, box_size(comm, snapshot)), loading, options, std::move(log)) {}
+
+Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+             Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
+             std::function<void(const std::string&)> log)
+    : impl_(std::make_unique<Impl>(comm, snapshot, law, std::move(boundary), loading, options,
+                                   std::move(log))) {}
+
+Model::~Model() = default;
+double Model::strain() const { return impl_->strain; }
+double Model::time() const { return impl_->time; }
+StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
+void Model::drop_setup() { impl_->newton->drop_setup(); }
+mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
+
+mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,
+                                const material::CrystalLaw& law) {
+  const auto size = static_cast<std::size_t>(law.layout().size());
+  const auto grains = static_cast<std::size_t>(mesh.topology.cell_count());
+  if (orientations.size() != grains)
+    throw core::InternalError(fmt::format("initial_snapshot: {} orientations for {} grains",
+                                          orientations.size(), grains));
+  std::vector<double> states(grains * size);
+  for (std::size_t g = 0; g < grains; ++g) law.initial_state(orientations[g], &states[g * size]);
+  mesh::Snapshot out;
+  out.mesh = std::move(mesh);
+  const std::size_t elements = out.mesh.tetrahedra.size();
+  std::vector<double> blocks(elements * size * element_points);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (std::size_t c = 0; c < size; ++c)
+      for (std::size_t q = 0; q < element_points; ++q)
+        blocks[(e * size + c) * element_points + q] =
+            states[static_cast<std::size_t>(out.mesh.tetrahedron_cell[e]) * size + c];
+  put_state(out, law, blocks);
+  put(out, mesh::Field{field::displacement, Location::node, 3, "L", Transport::shape_functions,
+                       "from the initial position",
+                       std::vector<double>(3 * out.mesh.nodes.size(), 0)});
+  return out;
+}
+
+}  // namespace polyslip::solver

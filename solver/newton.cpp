@@ -1,0 +1,188 @@
+#include "solver/newton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/exchange.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+VecHandle create_vector(MPI_Comm comm, PetscInt local_size, PetscInt block) {
+  VecHandle v;
+  check(VecCreate(comm, v.out()));
+  check(VecSetSizes(v.get(), local_size, PETSC_DETERMINE));
+  check(VecSetBlockSize(v.get(), block));
+  check(VecSetType(v.get(), VECSTANDARD));
+  check(VecSet(v.get(), 0));
+  return v;
+}
+
+void from_petsc(Vec from, std::size_t count, std::vector<double>& to) {
+  const PetscScalar* array = nullptr;
+  check(VecGetArrayRead(from, &array));
+  std::copy(array, array + count, to.begin());
+  check(VecRestoreArrayRead(from, &array));
+}
+
+LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t>& constrained,
+                         const std::vector<double>& x) {
+  const LocalMesh& local = d.local();
+  const auto dofs = 3 * static_cast<long>(local.owned_nodes);
+  LinearLayout layout;
+  layout.comm = local.comm;
+  layout.local_nodes = local.owned_nodes;
+  layout.local_pressures = d.mixed() ? local.element_count() : 0;
+  layout.parents = local.parents;
+  layout.is_corner = local.is_corner;
+  layout.coordinates.assign(x.begin(), x.begin() + dofs);
+  layout.constrained.assign(constrained.begin(), constrained.begin() + dofs);
+  return layout;
+}
+
+}  // namespace
+
+NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& boundary,
+                           const SolverOptions& options, const std::vector<double>& x)
+    : discretisation_(discretisation),
+      boundary_(boundary),
+      options_(options),
+      constrained_(constrained_dofs(discretisation.local(), boundary)),
+      linear_(std::make_unique<LinearSolver>(make_layout(discretisation, constrained_, x))) {
+  const LocalMesh& local = discretisation_.local();
+  ru_ = create_vector(local.comm, 3 * local.owned_nodes, 3);
+  du_ = create_vector(local.comm, 3 * local.owned_nodes, 3);
+  if (discretisation_.mixed()) {
+    rp_ = create_vector(local.comm, local.element_count(), 1);
+    dp_ = create_vector(local.comm, local.element_count(), 1);
+  }
+  increment_.assign(3 * static_cast<std::size_t>(local.local_nodes), 0);
+  pressure_increment_.assign(local.elements.size(), 0);
+  double volume = 0;
+  for (double v : discretisation_.reference_volumes()) volume += v;
+  length_ = std::cbrt(sum(local.comm, volume));
+  floor_force_ = 1e-6 * discretisation_.law().shear_modulus() * length_ * length_;
+}
+
+NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<double>& x,
+                                 std::vector<double>& p) {
+  NewtonReport report;
+  const Evaluation start = discretisation_.evaluate(problem.old, x, p, problem.time_step);
+  if (start != Evaluation::fine) {
+    report.reason = "predictor: " + describe(start);
+    return report;
+  }
+  update_residual(problem);
+  report.balance = measure(x);
+  while (!converged(report.balance, problem)) {
+    if (report.iterations == options_.max_newton_iterations) {
+      report.reason =
+          fmt::format("no convergence in {} Newton iterations (residual {:.3g} of the reactions)",
+                      report.iterations, report.balance.free_norm / report.balance.reaction_norm);
+      return report;
+    }
+    ++report.iterations;
+    linear_->set_blocks(discretisation_.assemble(constrained_));
+    if (!solve_linear(report)) return report;
+    if (!search(problem, report.balance, x, p, report)) return report;
+  }
+  report.converged = true;
+  return report;
+}
+
+void NewtonSolver::update_residual(const NewtonProblem& problem) {
+  residual_ = discretisation_.forces();
+  for (std::size_t i = 0; i < problem.external_forces.size(); ++i)
+    residual_[i] -= problem.external_forces[i];
+}
+
+Balance NewtonSolver::measure(const std::vector<double>& x) const {
+  return balance(discretisation_.local(), boundary_, constrained_, residual_, x,
+                 discretisation_.volumes(), discretisation_.volume_gap());
+}
+
+bool NewtonSolver::converged(const Balance& b, const NewtonProblem& problem) const {
+  const double t = options_.newton_tolerance;
+  const double force = std::max(b.largest_face_force, floor_force_);
+  bool fine = b.free_norm <= t * std::max(b.reaction_norm, floor_force_);
+  for (std::size_t i = 0; i < 3; ++i)
+    fine = fine && std::abs(b.resultant[i]) <= t * force &&
+           std::abs(b.moment[i]) <= t * force * length_;
+  return fine && b.volume_gap <= t * std::abs(problem.strain_increment);
+}
+
+bool NewtonSolver::solve_linear(NewtonReport& report) {
+  const LocalMesh& local = discretisation_.local();
+  const auto dofs = 3 * static_cast<std::size_t>(local.owned_nodes);
+  PetscScalar* array = nullptr;
+  check(VecGetArrayWrite(ru_.get(), &array));
+  for (std::size_t i = 0; i < dofs; ++i) array[i] = constrained_[i] ? 0 : -residual_[i];
+  check(VecRestoreArrayWrite(ru_.get(), &array));
+  if (discretisation_.mixed()) {
+    check(VecGetArrayWrite(rp_.get(), &array));
+    for (std::size_t e = 0; e < local.elements.size(); ++e)
+      array[e] = -discretisation_.volumes()[e] * discretisation_.volume_gap()[e];
+    check(VecRestoreArrayWrite(rp_.get(), &array));
+  }
+  const LinearReport linear =
+      linear_->solve(ru_.get(), rp_.get(), du_.get(), dp_.get(), options_.linear_tolerance,
+                     options_.max_linear_iterations);
+  report.linear_iterations += linear.iterations;
+  // An increment that is only roughly right still brings Newton's method forward.
+  if (!linear.converged && !(linear.relative_residual < 0.5)) {
+    report.reason = fmt::format("the linear solver stopped after {} iterations at {:.2g}",
+                                linear.iterations, linear.relative_residual);
+    return false;
+  }
+  from_petsc(du_.get(), dofs, increment_);
+  discretisation_.exchange().update_ghosts(increment_, 3);
+  if (discretisation_.mixed())
+    from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
+  return true;
+}
+
+double NewtonSolver::conjugate_residual() const {
+  double work = 0;
+  const auto dofs = 3 * static_cast<std::size_t>(discretisation_.local().owned_nodes);
+  for (std::size_t i = 0; i < dofs; ++i)
+    if (!constrained_[i]) work -= increment_[i] * residual_[i];
+  return sum(discretisation_.local().comm, work);
+}
+
+bool NewtonSolver::search(const NewtonProblem& problem, const Balance& before,
+                          std::vector<double>& x, std::vector<double>& p, NewtonReport& report) {
+  constexpr int max_trials = 6;
+  constexpr double accepted_work = 0.8;  // of the work of the residual on the increment
+  const std::vector<double> x0 = x, p0 = p;
+  const double work0 = conjugate_residual();
+  double lambda = 1;
+  std::string failure;
+  for (int trial = 0; trial < max_trials; ++trial) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = constrained_[i] ? x0[i] : x0[i] + lambda * increment_[i];
+    for (std::size_t e = 0; e < p.size(); ++e) p[e] = p0[e] + lambda * pressure_increment_[e];
+    if (trial == 1) ++report.line_searches;
+    const Evaluation outcome = discretisation_.evaluate(problem.old, x, p, problem.time_step);
+    if (outcome != Evaluation::fine) {
+      failure = describe(outcome);
+      lambda *= 0.5;
+      continue;
+    }
+    update_residual(problem);
+    report.balance = measure(x);
+    const double work = conjugate_residual();
+    if (report.balance.free_norm <= before.free_norm ||
+        std::abs(work) <= accepted_work * std::abs(work0))
+      return true;
+    failure = "the residual does not fall along the increment";
+    // Secant on the work, kept within reason.
+    const double secant = work0 > 0 && work < 0 ? work0 / (work0 - work) : 0.5;
+    lambda *= std::clamp(secant, 0.1, 0.8);
+  }
+  report.reason = failure;
+  return false;
+}
+
+}  // namespace polyslip::solver

@@ -1,0 +1,76 @@
+#pragma once
+// Equilibrium at the end of one step.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/boundary.hpp"
+#include "solver/discretisation.hpp"
+#include "solver/linear_solver.hpp"
+#include "solver/options.hpp"
+#include "solver/reactions.hpp"
+
+namespace polyslip::solver {
+
+/// One step to solve.
+struct NewtonProblem {
+  const Configuration& old;             ///< last converged one
+  double time_step = 0;                 ///< s
+  double strain_increment = 0;          ///< scale of the volume criterion
+  /// [local_nodes][3] forces of the surroundings on free dofs; empty: none
+  std::vector<double> external_forces;
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  int linear_iterations = 0;
+  int line_searches = 0;                ///< iterations that took less than the full increment
+  std::string reason;                   ///< why not; empty if converged
+  Balance balance;
+};
+
+/// Newton's method on forces and volumes. Converged means, with t = newton_tolerance and F the
+/// largest face force,
+///   |r_free|_2 <= t |reactions|_2,
+///   |sum r_free| <= t F and |sum x_i r_free_i| <= t F L for each direction (L = V^(1/3)),
+///   rms over the volume of ln(V/V0) - p/K <= t |strain increment|,
+/// every point converged, no element inverted. Scales never fall below those of a stress of 1e-6
+/// times the shear modulus.
+class NewtonSolver {
+ public:
+  /// Collective.
+  NewtonSolver(Discretisation& discretisation, const Boundary& boundary,
+               const SolverOptions& options, const std::vector<double>& x);
+
+  /// x, p: the predictor on entry (prescribed dofs exact), the solution on return. On success the
+  /// discretisation holds the evaluation at the solution. Collective; the same report on each rank.
+  NewtonReport solve(const NewtonProblem& problem, std::vector<double>& x, std::vector<double>& p);
+  /// See LinearSolver::drop_setup.
+  void drop_setup() { linear_->drop_setup(); }
+
+  const std::vector<std::uint8_t>& constrained() const { return constrained_; }
+
+ private:
+  Discretisation& discretisation_;
+  const Boundary& boundary_;
+  SolverOptions options_;
+  std::vector<std::uint8_t> constrained_;
+  std::unique_ptr<LinearSolver> linear_;
+  VecHandle ru_, rp_, du_, dp_;
+  std::vector<double> residual_;            // [local_nodes][3] internal - external
+  std::vector<double> increment_, pressure_increment_;
+  double length_ = 0, floor_force_ = 0;
+
+  void update_residual(const NewtonProblem& problem);
+  Balance measure(const std::vector<double>& x) const;
+  bool converged(const Balance& balance, const NewtonProblem& problem) const;
+  bool solve_linear(NewtonReport& report);
+  double conjugate_residual() const;
+  bool search(const NewtonProblem& problem, const Balance& before, std::vector<double>& x,
+              std::vector<double>& p, NewtonReport& report);
+};
+
+}  // namespace polyslip::solver

@@ -1,0 +1,290 @@
+#include "solver/partition.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "core/error.hpp"
+#include "solver/exchange.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+/// Gives elements[begin, end) to ranks [first, first + count).
+void bisect(const std::vector<core::Vec3>& centroids, std::vector<int>& order, int begin, int end,
+            int first, int count, std::vector<int>& rank) {
+  if (count == 1) {
+    for (int i = begin; i < end; ++i) rank[order[i]] = first;
+    return;
+  }
+  core::Vec3 low = core::Vec3::Constant(std::numeric_limits<double>::max()), high = -low;
+  for (int i = begin; i < end; ++i) {
+    low = low.cwiseMin(centroids[order[i]]);
+    high = high.cwiseMax(centroids[order[i]]);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  const int left = count / 2;
+  const int middle =
+      begin + static_cast<int>(static_cast<long>(end - begin) * left / count);
+  std::sort(order.begin() + begin, order.begin() + end, [&](int a, int b) {
+    return centroids[a][axis] != centroids[b][axis] ? centroids[a][axis] < centroids[b][axis]
+                                                    : a < b;
+  });
+  bisect(centroids, order, begin, middle, first, left, rank);
+  bisect(centroids, order, middle, end, first + left, count - left, rank);
+}
+
+/// Rank 0's view of a distribution: numbers of every node and element.
+struct Numbering {
+  std::vector<int> owner;                   // [nodes] smallest rank that touches the node
+  std::vector<PetscInt> global;             // [nodes]
+  std::vector<PetscInt> first_node, first_element;      // [ranks + 1]
+  std::vector<std::vector<int>> nodes, elements;        // [ranks] as mesh numbers
+};
+
+Numbering number(const mesh::Mesh& mesh, const std::vector<int>& element_rank, int ranks) {
+  Numbering n;
+  const int nodes = mesh.node_count();
+  n.owner.assign(nodes, ranks);
+  n.elements.resize(ranks);
+  std::vector<std::vector<int>> touched(ranks);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int r = element_rank[e];
+    if (r < 0 || r >= ranks) throw core::InternalError("partition: rank out of range");
+    n.elements[r].push_back(e);
+    for (int node : mesh.tetrahedra[e]) {
+      n.owner[node] = std::min(n.owner[node], r);
+      touched[r].push_back(node);
+    }
+  }
+  n.first_node.assign(ranks + 1, 0);
+  n.first_element.assign(ranks + 1, 0);
+  n.nodes.resize(ranks);
+  for (int node = 0; node < nodes; ++node) {
+    if (n.owner[node] == ranks) throw core::InternalError("partition: node without element");
+    n.nodes[n.owner[node]].push_back(node);
+  }
+  n.global.assign(nodes, 0);
+  for (int r = 0; r < ranks; ++r) {
+    n.first_node[r + 1] = n.first_node[r] + static_cast<PetscInt>(n.nodes[r].size());
+    n.first_element[r + 1] = n.first_element[r] + static_cast<PetscInt>(n.elements[r].size());
+    for (std::size_t i = 0; i < n.nodes[r].size(); ++i)
+      n.global[n.nodes[r][i]] = n.first_node[r] + static_cast<PetscInt>(i);
+  }
+  for (int r = 0; r < ranks; ++r) {
+    auto& t = touched[r];
+    std::sort(t.begin(), t.end());
+    t.erase(std::unique(t.begin(), t.end()), t.end());
+    std::vector<int> ghosts;
+    for (int node : t)
+      if (n.owner[node] != r) ghosts.push_back(node);
+    std::sort(ghosts.begin(), ghosts.end(),
+              [&](int a, int b) { return n.global[a] < n.global[b]; });
+    n.nodes[r].insert(n.nodes[r].end(), ghosts.begin(), ghosts.end());
+  }
+  return n;
+}
+
+std::vector<std::uint8_t> domain_faces(const mesh::Mesh& mesh) {
+  std::vector<std::uint8_t> faces(mesh.nodes.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const int face = mesh.topology.faces[mesh.triangle_face[t]].domain_face;
+    if (face < 0) continue;
+    for (int node : mesh.triangles[t]) faces[node] |= static_cast<std::uint8_t>(1u << face);
+  }
+  return faces;
+}
+
+/// Mesh numbers of the two nodes whose mean a node is on the vertex level.
+std::vector<std::array<int, 2>> parent_nodes(const mesh::Mesh& mesh) {
+  std::vector<std::array<int, 2>> parents(mesh.nodes.size(), {-1, -1});
+  for (const auto& t : mesh.tetrahedra) {
+    for (int i = 0; i < 4; ++i) parents[t[i]] = {t[i], t[i]};
+    for (int i = 0; i < 6; ++i) {
+      const auto [a, b] = mesh::tetrahedron_edges[i];
+      parents[t[4 + i]] = {std::min(t[a], t[b]), std::max(t[a], t[b])};
+    }
+  }
+  return parents;
+}
+
+std::vector<double> pick(const std::vector<double>& values, const std::vector<int>& entities,
+                         int components) {
+  std::vector<double> picked;
+  picked.reserve(entities.size() * components);
+  for (int i : entities)
+    for (int c = 0; c < components; ++c)
+      picked.push_back(values[static_cast<std::size_t>(i) * components + c]);
+  return picked;
+}
+
+std::vector<double> place(const std::vector<std::vector<double>>& parts,
+                          const std::vector<std::vector<int>>& entities, int components) {
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<double> values(total);
+  for (std::size_t r = 0; r < parts.size(); ++r)
+    for (std::size_t i = 0; i < parts[r].size() / components; ++i)
+      for (int c = 0; c < components; ++c)
+        values[static_cast<std::size_t>(entities[r][i]) * components + c] =
+            parts[r][i * components + c];
+  return values;
+}
+
+}  // namespace
+
+std::vector<int> partition_elements(const mesh::Mesh& mesh, int ranks) {
+  const int n = mesh.element_count();
+  std::vector<core::Vec3> centroids(n);
+  for (int e = 0; e < n; ++e) {
+    const auto& t = mesh.tetrahedra[e];
+    centroids[e] =
+        0.25 * (mesh.nodes[t[0]] + mesh.nodes[t[1]] + mesh.nodes[t[2]] + mesh.nodes[t[3]]);
+  }
+  std::vector<int> order(n), rank(n, 0);
+  std::iota(order.begin(), order.end(), 0);
+  bisect(centroids, order, 0, n, 0, ranks, rank);
+  return rank;
+}
+
+Distribution::Distribution(MPI_Comm comm, const mesh::Mesh& mesh,
+                           const std::vector<int>& element_rank) {
+  const int ranks = size_of(comm);
+  std::vector<std::vector<PetscInt>> heads(ranks), globals(ranks), parents(ranks);
+  std::vector<std::vector<int>> connectivity(ranks);
+  std::vector<std::vector<std::uint8_t>> faces(ranks);
+  on_root(comm, [&] {
+    if (mesh.order != 2) throw core::InternalError("partition: the mesh has no mid nodes");
+    Numbering n = number(mesh, element_rank, ranks);
+    const auto node_faces = domain_faces(mesh);
+    const auto parent = parent_nodes(mesh);
+    std::vector<int> local_number(mesh.nodes.size(), -1);
+    for (int r = 0; r < ranks; ++r) {
+      heads[r] = {n.first_node[r], n.first_node[r + 1], n.first_node[ranks], n.first_element[r],
+                  n.first_element[ranks]};
+      for (std::size_t i = 0; i < n.nodes[r].size(); ++i) {
+        const int node = n.nodes[r][i];
+        local_number[node] = static_cast<int>(i);
+        globals[r].push_back(n.global[node]);
+        faces[r].push_back(node_faces[node]);
+        if (n.owner[node] != r) continue;
+        for (int end : parent[node]) parents[r].push_back(n.global[end]);
+      }
+      for (int e : n.elements[r])
+        for (int node : mesh.tetrahedra[e]) connectivity[r].push_back(local_number[node]);
+      owned_of_.push_back(static_cast<int>(n.first_node[r + 1] - n.first_node[r]));
+    }
+    nodes_of_ = std::move(n.nodes);
+    elements_of_ = std::move(n.elements);
+  });
+  if (rank_of(comm) != 0) {
+    nodes_of_.resize(ranks);
+    elements_of_.resize(ranks);
+  }
+  const auto head = scatter(comm, heads);
+  local_.comm = comm;
+  local_.first_node = head[0];
+  local_.owned_nodes = static_cast<int>(head[1] - head[0]);
+  local_.global_nodes = head[2];
+  local_.first_element = head[3];
+  local_.global_elements = head[4];
+  local_.node_global = scatter(comm, globals);
+  local_.local_nodes = static_cast<int>(local_.node_global.size());
+  local_.node_faces = scatter(comm, faces);
+  local_.node_mesh = scatter(comm, nodes_of_);
+  local_.element_mesh = scatter(comm, elements_of_);
+  const auto flat = scatter(comm, connectivity);
+  local_.elements.resize(flat.size() / 10);
+  for (std::size_t i = 0; i < flat.size(); ++i) local_.elements[i / 10][i % 10] = flat[i];
+  const auto ends = scatter(comm, parents);
+  for (int i = 0; i < local_.owned_nodes; ++i) {
+    local_.parents.push_back({ends[2 * i], ends[2 * i + 1]});
+    local_.is_corner.push_back(ends[2 * i] == ends[2 * i + 1]);
+  }
+}
+
+std::vector<double> Distribution::scatter_nodes(const std::vector<double>& values,
+                                                int components) const {
+  std::vector<std::vector<double>> parts(nodes_of_.size());
+  if (rank_of(local_.comm) == 0)
+    for (std::size_t r = 0; r < parts.size(); ++r)
+      parts[r] = pick(values, nodes_of_[r], components);
+  return scatter(local_.comm, parts);
+}
+
+std::vector<double> Distribution::scatter_elements(const std::vector<double>& values,
+                                                   int components) const {
+  std::vector<std::vector<double>> parts(elements_of_.size());
+  if (rank_of(local_.comm) == 0)
+    for (std::size_t r = 0; r < parts.size(); ++r)
+      parts[r] = pick(values, elements_of_[r], components);
+  return scatter(local_.comm, parts);
+}
+
+std::vector<double> Distribution::gather_nodes(const std::vector<double>& values,
+                                               int components) const {
+  const std::vector<double> owned(
+      values.begin(), values.begin() + static_cast<long>(local_.owned_nodes) * components);
+  const auto parts = gather(local_.comm, owned);
+  return parts.empty() ? std::vector<double>{} : place(parts, nodes_of_, components);
+}
+
+std::vector<double> Distribution::gather_elements(const std::vector<double>& values,
+                                                  int components) const {
+  const auto parts = gather(local_.comm, values);
+  return parts.empty() ? std::vector<double>{} : place(parts, elements_of_, components);
+}
+
+NodeExchange::NodeExchange(const LocalMesh& local) : comm_(local.comm) {
+  const int ranks = size_of(comm_), me = rank_of(comm_);
+  std::vector<PetscInt> first(static_cast<std::size_t>(ranks) + 1);
+  MPI_Allgather(&local.first_node, 1, MPIU_INT, first.data(), 1, MPIU_INT, comm_);
+  first[ranks] = local.global_nodes;
+  std::vector<std::vector<PetscInt>> wanted(ranks);
+  std::vector<std::vector<int>> ghosts(ranks);
+  for (int i = local.owned_nodes; i < local.local_nodes; ++i) {
+    const auto after = std::upper_bound(first.begin(), first.end(), local.node_global[i]);
+    const auto owner = static_cast<std::size_t>(after - first.begin() - 1);
+    wanted[owner].push_back(local.node_global[i]);
+    ghosts[owner].push_back(i);
+  }
+  std::vector<int> everyone;
+  std::vector<std::vector<PetscInt>> out;
+  for (int r = 0; r < ranks; ++r) {
+    if (r == me) continue;
+    everyone.push_back(r);
+    out.push_back(wanted[r]);
+  }
+  const auto asked = exchange(comm_, everyone, out);
+  for (std::size_t k = 0; k < everyone.size(); ++k) {
+    if (asked[k].empty() && out[k].empty()) continue;
+    neighbours_.push_back(everyone[k]);
+    ghosts_of_.push_back(ghosts[everyone[k]]);
+    std::vector<int> seen;
+    for (PetscInt g : asked[k]) seen.push_back(static_cast<int>(g - local.first_node));
+    seen_by_.push_back(std::move(seen));
+  }
+}
+
+void NodeExchange::update_ghosts(std::vector<double>& values, int components) const {
+  std::vector<std::vector<double>> out;
+  for (const auto& nodes : seen_by_) out.push_back(pick(values, nodes, components));
+  const auto in = exchange(comm_, neighbours_, out);
+  for (std::size_t k = 0; k < in.size(); ++k)
+    for (std::size_t i = 0; i < in[k].size(); ++i)
+      values[static_cast<std::size_t>(ghosts_of_[k][i / components]) * components +
+             i % components] = in[k][i];
+}
+
+void NodeExchange::add_ghosts(std::vector<double>& values, int components) const {
+  std::vector<std::vector<double>> out;
+  for (const auto& nodes : ghosts_of_) out.push_back(pick(values, nodes, components));
+  const auto in = exchange(comm_, neighbours_, out);
+  for (std::size_t k = 0; k < in.size(); ++k)
+    for (std::size_t i = 0; i < in[k].size(); ++i)
+      values[static_cast<std::size_t>(seen_by_[k][i / components]) * components +
+             i % components] += in[k][i];
+}
+
+}  // namespace polyslip::solver

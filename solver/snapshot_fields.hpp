@@ -1,0 +1,46 @@
+#pragma once
+// Between a snapshot's fields (rank 0, entity by entity) and the solver's arrays (every rank, lane
+// innermost).
+
+#include <string>
+#include <vector>
+
+#include "material/crystal_law.hpp"
+#include "mesh/snapshot.hpp"
+
+namespace polyslip::solver {
+
+/// Names of the fields and histories that only the solver reads.
+namespace field {
+inline const std::string displacement = "displacement";
+inline const std::string reference_volume = "reference_volume";
+inline const std::string volume = "volume";
+inline const std::string pressure = "pressure";
+inline const std::string cauchy_stress = "cauchy_stress";
+inline const std::string partition = "partition";
+inline const std::string volume_ratio = "volume_ratio";                // displacement element
+inline const std::string displacement_rate = "solver_displacement_rate";
+inline const std::string pressure_rate = "solver_pressure_rate";
+inline const std::string step_history = "solver_step";                 // StepControl::history
+inline const std::string partition_ranks = "solver_partition_ranks";   // {ranks}
+}  // namespace field
+
+/// Throws core::InternalError unless the snapshot has a mesh of order 2, four points an element and
+/// each state field of the law, of the right size.
+void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law);
+
+/// The law's state in blocks: [elements][layout size][4].
+std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material::CrystalLaw& law);
+
+/// Values of a field; empty if there is none.
+std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string& name,
+                              mesh::Location location);
+
+/// Replaces the field of that name and location, or adds it.
+void put(mesh::Snapshot& snapshot, mesh::Field field);
+
+/// The state fields out of blocks, put into the snapshot.
+void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+               const std::vector<double>& blocks);
+
+}  // namespace polyslip::solver
