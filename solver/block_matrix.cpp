@@ -92,7 +92,8 @@ BlockPattern::BlockPattern(const LocalMesh& local, const NodeExchange& exchange)
 }
 
 std::int64_t BlockPattern::slot(int row, PetscInt column) const {
-  const auto begin = columns_.begin() + row_start_[row], end = columns_.begin() + row_start_[row + 1];
+  const auto begin = columns_.begin() + row_start_[row],
+             end = columns_.begin() + row_start_[row + 1];
   const auto found = std::lower_bound(begin, end, column);
   if (found == end || *found != column) throw core::InternalError("BlockPattern: no such block");
   return 9 * row_start_[row] + 3 * (found - begin);
@@ -120,7 +121,8 @@ void BlockPattern::finish(const std::vector<std::uint8_t>& constrained,
       const int step = stride(ghost);
       for (int j = 0; j < step; j += 3) {
         const double* block = values.data() + 9 * row_start_[ghost] + j;
-        for (int i = 0; i < 3; ++i) out[k].insert(out[k].end(), block + i * step, block + i * step + 3);
+        for (int i = 0; i < 3; ++i)
+          out[k].insert(out[k].end(), block + i * step, block + i * step + 3);
       }
     }
   const auto in = solver::exchange(local_.comm, ranks, out);
@@ -176,8 +178,7 @@ void VolumeGradientMatrix::set(int element, const ElementForces& b,
                                std::vector<double>& values) const {
   const std::size_t first = 30 * static_cast<std::size_t>(element);
   for (std::size_t a = 0; a < element_nodes; ++a)
-    for (std::size_t i = 0; i < 3; ++i)
-      values[first + position_[first + 3 * a + i]] = b[a][i];
+    for (std::size_t i = 0; i < 3; ++i) values[first + position_[first + 3 * a + i]] = b[a][i];
 }
 
 MatHandle VolumeGradientMatrix::create() const {

@@ -1,6 +1,6 @@
 #pragma once
-// Sparse matrices of 3 x 3 node blocks: pattern from the elements, sums in a fixed order (element by
-// element, then neighbour by neighbour), so that the same ranks give the same bits.
+// Sparse matrices of 3 x 3 node blocks: pattern from the elements, sums in a fixed order (element
+// by element, then neighbour by neighbour), so that the same ranks give the same bits.
 
 #include <cstdint>
 #include <vector>
@@ -34,10 +34,10 @@ class BlockPattern {
  private:
   const LocalMesh& local_;
   const NodeExchange& exchange_;
-  std::vector<std::int64_t> row_start_;      // [local_nodes + 1] in blocks
-  std::vector<PetscInt> columns_;            // [blocks] global nodes, ascending in a row
-  std::vector<std::int64_t> slots_;          // [elements][10][10] first value of each block
-  std::vector<std::int64_t> diagonal_;       // [owned_nodes] first value
+  std::vector<std::int64_t> row_start_;              // [local_nodes + 1] in blocks
+  std::vector<PetscInt> columns_;                    // [blocks] global nodes, ascending in a row
+  std::vector<std::int64_t> slots_;                  // [elements][10][10] first value of each block
+  std::vector<std::int64_t> diagonal_;               // [owned_nodes] first value
   std::vector<std::vector<std::int64_t>> received_;  // [neighbours][blocks] first value
   std::vector<std::vector<PetscInt>> received_stride_;
 

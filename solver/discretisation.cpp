@@ -284,8 +284,8 @@ std::vector<double> Discretisation::element_stress() const {
     element_geometry(positions(static_cast<int>(e), x_), geometry);
     for (std::size_t q = 0; q < element_points; ++q)
       for (std::size_t c = 0; c < 6; ++c)
-        out[6 * e + c] += geometry.weights[q] / geometry.volume *
-                          points[(element_points * e + q) * 6 + c];
+        out[6 * e + c] +=
+            geometry.weights[q] / geometry.volume * points[(element_points * e + q) * 6 + c];
   }
   return out;
 }

@@ -68,8 +68,7 @@ void moduli(const double* stress, const double* tangent, double p, double bulk, 
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) {
-          double m =
-              tangent[(9 * mandel[i][j] + 3 * k + l) * element_points + q] * plain(i, j);
+          double m = tangent[(9 * mandel[i][j] + 3 * k + l) * element_points + q] * plain(i, j);
           if (k == l) m += sigma[i][j];
           if (j == k) m -= sigma[i][l];
           if (i == j && k == l) m += bulk;
@@ -87,8 +86,7 @@ bool element_geometry(const ElementPositions& x, ElementGeometry& geometry) {
     double jacobian[3][3] = {};  // dx_i/dxi_j
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        for (int a = 0; a < element_nodes; ++a)
-          jacobian[i][j] += x[a][i] * ref.gradients[q][j][a];
+        for (int a = 0; a < element_nodes; ++a) jacobian[i][j] += x[a][i] * ref.gradients[q][j][a];
     const double det = determinant(jacobian);
     if (!(det > 0)) return false;
     double inverse[3][3];  // dxi_j/dx_i at [j][i]

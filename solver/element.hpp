@@ -19,8 +19,8 @@ static_assert(element_points == material::lanes, "one element is one block of po
 using ElementPositions = std::array<std::array<double, 3>, element_nodes>;
 using ElementForces = std::array<std::array<double, 3>, element_nodes>;
 /// K[a][i][b][k] = d f_ai / d u_bk
-using ElementMatrix = std::array<std::array<std::array<std::array<double, 3>, element_nodes>, 3>,
-                                 element_nodes>;
+using ElementMatrix =
+    std::array<std::array<std::array<std::array<double, 3>, element_nodes>, 3>, element_nodes>;
 
 /// An element's geometry at its quadrature points.
 struct ElementGeometry {

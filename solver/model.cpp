@@ -51,12 +51,12 @@ struct Model::Impl {
   Boundary boundary;
   std::function<void(const std::string&)> log;
   bool root, mixed;
-  mesh::Snapshot base;  // rank 0: mesh and what else came with the snapshot
+  mesh::Snapshot base;     // rank 0: mesh and what else came with the snapshot
   std::vector<int> ranks;  // rank 0: of each element
   Distribution distribution;
   NodeExchange exchange;
   Configuration now;
-  std::vector<double> displacement;                     // [local_nodes][3]
+  std::vector<double> displacement;                      // [local_nodes][3]
   std::vector<double> displacement_rate, pressure_rate;  // of the predictor, per unit strain
   std::vector<double> element_stress, point_stress, volumes;
   double strain = 0, time = 0;
@@ -85,9 +85,9 @@ struct Model::Impl {
     time = broadcast(comm, base.time);
     read_configuration();
     read_history();
-    discretisation = std::make_unique<Discretisation>(
-        distribution.local(), exchange, law, mixed, now.x,
-        read(field::reference_volume, Location::element, 1));
+    discretisation =
+        std::make_unique<Discretisation>(distribution.local(), exchange, law, mixed, now.x,
+                                         read(field::reference_volume, Location::element, 1));
     if (volumes.empty()) volumes = discretisation->reference_volumes();
     newton = std::make_unique<NewtonSolver>(*discretisation, boundary, options, now.x);
   }
@@ -103,18 +103,17 @@ struct Model::Impl {
     const auto values = root ? values_of(base, name, location) : std::vector<double>{};
     if (!broadcast(comm, !values.empty())) return {};
     const int points = location == Location::quadrature_point ? element_points : 1;
-    return location == Location::node
-               ? distribution.scatter_nodes(values, components)
-               : distribution.scatter_elements(values, components * points);
+    return location == Location::node ? distribution.scatter_nodes(values, components)
+                                      : distribution.scatter_elements(values, components * points);
   }
 
   void read_configuration() {
     const auto& local = distribution.local();
     const std::size_t elements = local.elements.size();
     now.x = distribution.scatter_nodes(root ? flat(base.mesh.nodes) : std::vector<double>{}, 3);
-    now.state = distribution.scatter_elements(
-        root ? state_blocks(base, law) : std::vector<double>{},
-        law.layout().size() * element_points);
+    now.state =
+        distribution.scatter_elements(root ? state_blocks(base, law) : std::vector<double>{},
+                                      law.layout().size() * element_points);
     // Without the volumes of zero stress there is no pressure: a fresh or remeshed body.
     const bool stressed =
         broadcast(comm, base.find(field::reference_volume, Location::element) != nullptr);
@@ -126,11 +125,11 @@ struct Model::Impl {
     };
     now.p = take(field::pressure, Location::element, 1, elements, 0);
     for (double& p : now.p) p = -p;
-    now.volume_ratio = take(field::volume_ratio, Location::quadrature_point, 1,
-                            elements * element_points, 1);
+    now.volume_ratio =
+        take(field::volume_ratio, Location::quadrature_point, 1, elements * element_points, 1);
     element_stress = take(field::cauchy_stress, Location::element, 6, elements * 6, 0);
-    point_stress = take(field::cauchy_stress, Location::quadrature_point, 6,
-                        elements * element_points * 6, 0);
+    point_stress =
+        take(field::cauchy_stress, Location::quadrature_point, 6, elements * element_points * 6, 0);
     volumes = stressed ? read(field::volume, Location::element, 1) : std::vector<double>{};
     displacement = read(field::displacement, Location::node, 3);
     if (displacement.empty()) displacement.assign(now.x.size(), 0);
@@ -245,13 +244,15 @@ struct Model::Impl {
            const std::string& unit, Transport transport, const std::string& description,
            std::vector<double> values) const {
     if (root)
-      put(out, mesh::Field{name, location, components, unit, transport, description,
-                           std::move(values)});
+      put(out,
+          mesh::Field{name, location, components, unit, transport, description, std::move(values)});
   }
 
   mesh::Snapshot snapshot() const {
     mesh::Snapshot out = base;
-    const auto nodes = [&](const std::vector<double>& v) { return distribution.gather_nodes(v, 3); };
+    const auto nodes = [&](const std::vector<double>& v) {
+      return distribution.gather_nodes(v, 3);
+    };
     const auto elements = [&](const std::vector<double>& v, int components) {
       return distribution.gather_elements(v, components);
     };
@@ -304,8 +305,8 @@ struct Model::Impl {
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              const LoadingOptions& loading, const SolverOptions& options,
              std::function<void(const std::string&)> log)
-    : Model(comm, snapshot, law,
-            make_boundary(loading, box_size(comm, snapshot)), loading, options, std::move(log)) {}
+    : Model(comm, snapshot, law, make_boundary(loading, box_size(comm, snapshot)), loading, options,
+            std::move(log)) {}
 
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
@@ -339,9 +340,9 @@ mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quatern
         blocks[(e * size + c) * element_points + q] =
             states[static_cast<std::size_t>(out.mesh.tetrahedron_cell[e]) * size + c];
   put_state(out, law, blocks);
-  put(out, mesh::Field{field::displacement, Location::node, 3, "L", Transport::shape_functions,
-                       "from the initial position",
-                       std::vector<double>(3 * out.mesh.nodes.size(), 0)});
+  put(out,
+      mesh::Field{field::displacement, Location::node, 3, "L", Transport::shape_functions,
+                  "from the initial position", std::vector<double>(3 * out.mesh.nodes.size(), 0)});
   return out;
 }
 

@@ -18,13 +18,13 @@ namespace polyslip::solver {
 
 /// One accepted step: a row of macro.csv.
 struct StepRecord {
-  double strain = 0, time = 0, step_size = 0;   ///< at the end of the step; 1, s, 1
-  std::array<double, 6> stress{};               ///< xx yy zz yz zx xy, volume average, MPa
-  double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;       ///< force of the surroundings on the body, MPa L^2
+  double strain = 0, time = 0, step_size = 0;  ///< at the end of the step; 1, s, 1
+  std::array<double, 6> stress{};              ///< xx yy zz yz zx xy, volume average, MPa
+  double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;      ///< force of the surroundings on the body, MPa L^2
   std::array<std::array<double, 3>, 6> face_forces{};  ///< all faces x0 ... z1
   int newton_iterations = 0, linear_iterations = 0;    ///< of this step, cut attempts included
-  int cuts = 0;                                 ///< attempts that failed before this one
-  double min_jacobian_ratio = 1;                ///< worst element: min det J / mean det J
+  int cuts = 0;                                        ///< attempts that failed before this one
+  double min_jacobian_ratio = 1;                       ///< worst element: min det J / mean det J
 };
 
 /// Collective throughout. The snapshot lives on rank 0 (others pass anything).

@@ -138,8 +138,7 @@ bool NewtonSolver::solve_linear(NewtonReport& report) {
   }
   from_petsc(du_.get(), dofs, increment_);
   discretisation_.exchange().update_ghosts(increment_, 3);
-  if (discretisation_.mixed())
-    from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
+  if (discretisation_.mixed()) from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
   return true;
 }
 

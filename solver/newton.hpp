@@ -16,9 +16,9 @@ namespace polyslip::solver {
 
 /// One step to solve.
 struct NewtonProblem {
-  const Configuration& old;             ///< last converged one
-  double time_step = 0;                 ///< s
-  double strain_increment = 0;          ///< scale of the volume criterion
+  const Configuration& old;     ///< last converged one
+  double time_step = 0;         ///< s
+  double strain_increment = 0;  ///< scale of the volume criterion
   /// [local_nodes][3] forces of the surroundings on free dofs; empty: none
   std::vector<double> external_forces;
 };
@@ -27,8 +27,8 @@ struct NewtonReport {
   bool converged = false;
   int iterations = 0;
   int linear_iterations = 0;
-  int line_searches = 0;                ///< iterations that took less than the full increment
-  std::string reason;                   ///< why not; empty if converged
+  int line_searches = 0;  ///< iterations that took less than the full increment
+  std::string reason;     ///< why not; empty if converged
   Balance balance;
 };
 
@@ -60,7 +60,7 @@ class NewtonSolver {
   std::vector<std::uint8_t> constrained_;
   std::unique_ptr<LinearSolver> linear_;
   VecHandle ru_, rp_, du_, dp_;
-  std::vector<double> residual_;            // [local_nodes][3] internal - external
+  std::vector<double> residual_;  // [local_nodes][3] internal - external
   std::vector<double> increment_, pressure_increment_;
   double length_ = 0, floor_force_ = 0;
 

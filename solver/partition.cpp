@@ -25,8 +25,7 @@ void bisect(const std::vector<core::Vec3>& centroids, std::vector<int>& order, i
   int axis = 0;
   (high - low).maxCoeff(&axis);
   const int left = count / 2;
-  const int middle =
-      begin + static_cast<int>(static_cast<long>(end - begin) * left / count);
+  const int middle = begin + static_cast<int>(static_cast<long>(end - begin) * left / count);
   std::sort(order.begin() + begin, order.begin() + end, [&](int a, int b) {
     return centroids[a][axis] != centroids[b][axis] ? centroids[a][axis] < centroids[b][axis]
                                                     : a < b;
@@ -37,10 +36,10 @@ void bisect(const std::vector<core::Vec3>& centroids, std::vector<int>& order, i
 
 /// Rank 0's view of a distribution: numbers of every node and element.
 struct Numbering {
-  std::vector<int> owner;                   // [nodes] smallest rank that touches the node
-  std::vector<PetscInt> global;             // [nodes]
-  std::vector<PetscInt> first_node, first_element;      // [ranks + 1]
-  std::vector<std::vector<int>> nodes, elements;        // [ranks] as mesh numbers
+  std::vector<int> owner;                           // [nodes] smallest rank that touches the node
+  std::vector<PetscInt> global;                     // [nodes]
+  std::vector<PetscInt> first_node, first_element;  // [ranks + 1]
+  std::vector<std::vector<int>> nodes, elements;    // [ranks] as mesh numbers
 };
 
 Numbering number(const mesh::Mesh& mesh, const std::vector<int>& element_rank, int ranks) {
@@ -283,8 +282,8 @@ void NodeExchange::add_ghosts(std::vector<double>& values, int components) const
   const auto in = exchange(comm_, neighbours_, out);
   for (std::size_t k = 0; k < in.size(); ++k)
     for (std::size_t i = 0; i < in[k].size(); ++i)
-      values[static_cast<std::size_t>(seen_by_[k][i / components]) * components +
-             i % components] += in[k][i];
+      values[static_cast<std::size_t>(seen_by_[k][i / components]) * components + i % components] +=
+          in[k][i];
 }
 
 }  // namespace polyslip::solver

@@ -20,12 +20,13 @@ std::size_t entities(const mesh::Mesh& mesh, Location location) {
 void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law) {
   if (snapshot.mesh.order != 2 || snapshot.quadrature_points != material::lanes ||
       snapshot.mesh.tetrahedra.empty())
-    throw core::InternalError("Model: the snapshot needs a mesh of order 2, four points an element");
+    throw core::InternalError(
+        "Model: the snapshot needs a mesh of order 2, four points an element");
   for (const auto& wanted : law.layout().fields) {
     const auto* f = snapshot.find(wanted.name, Location::quadrature_point);
     if (!f || f->components != wanted.components)
-      throw core::InternalError(fmt::format("Model: the snapshot lacks the state field \"{}\"",
-                                            wanted.name));
+      throw core::InternalError(
+          fmt::format("Model: the snapshot lacks the state field \"{}\"", wanted.name));
   }
   for (const auto& f : snapshot.fields)
     if (f.values.size() != entities(snapshot.mesh, f.location) * f.components)
@@ -72,8 +73,13 @@ void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
   std::size_t offset = 0;
   for (const auto& part : law.layout().fields) {
     const auto components = static_cast<std::size_t>(part.components);
-    mesh::Field f{part.name,      Location::quadrature_point, part.components, part.unit,
-                  part.transport, part.description,           {}};
+    mesh::Field f{part.name,
+                  Location::quadrature_point,
+                  part.components,
+                  part.unit,
+                  part.transport,
+                  part.description,
+                  {}};
     f.values.resize(elements * lanes * components);
     for (std::size_t e = 0; e < elements; ++e)
       for (std::size_t q = 0; q < lanes; ++q)

@@ -18,11 +18,11 @@ inline const std::string volume = "volume";
 inline const std::string pressure = "pressure";
 inline const std::string cauchy_stress = "cauchy_stress";
 inline const std::string partition = "partition";
-inline const std::string volume_ratio = "volume_ratio";                // displacement element
+inline const std::string volume_ratio = "volume_ratio";  // displacement element
 inline const std::string displacement_rate = "solver_displacement_rate";
 inline const std::string pressure_rate = "solver_pressure_rate";
-inline const std::string step_history = "solver_step";                 // StepControl::history
-inline const std::string partition_ranks = "solver_partition_ranks";   // {ranks}
+inline const std::string step_history = "solver_step";                // StepControl::history
+inline const std::string partition_ranks = "solver_partition_ranks";  // {ranks}
 }  // namespace field
 
 /// Throws core::InternalError unless the snapshot has a mesh of order 2, four points an element and

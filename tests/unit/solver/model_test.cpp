@@ -1,0 +1,159 @@
+// The model under homogeneous and simple loads with the test law: what does not need a crystal.
+#include "solver/model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "support/box_mesh.hpp"
+#include "support/elastic_law.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+mesh::Snapshot box(const material::CrystalLaw& law, double distortion = 0) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank != 0) return {};
+  auto m = tests::box_mesh({4, 3, 3}, {2, 1.5, 1.2}, 2);
+  if (distortion > 0) tests::distort(m, distortion);
+  return initial_snapshot(std::move(m),
+                          {core::Quaternion::Identity(), core::Quaternion::Identity()}, law);
+}
+
+Boundary linear_motion(const core::Mat3& gradient) {
+  Boundary b;
+  b.mean_gradient = [gradient](double s) -> core::Mat3 {
+    return core::Mat3::Identity() + s * gradient;
+  };
+  b.all = [f = b.mean_gradient](const core::Vec3& x, double s) -> core::Vec3 { return f(s) * x; };
+  return b;
+}
+
+SolverOptions tight() {
+  SolverOptions o;
+  o.newton_tolerance = 1e-9;
+  o.linear_tolerance = 1e-9;
+  return o;
+}
+
+LoadingOptions one_step(double size) {
+  LoadingOptions l;
+  l.max_strain_increment = size;
+  l.fixed_increment = true;
+  return l;
+}
+
+class PatchTest : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(PatchTest, AConstantGradientGivesAConstantStress) {
+  const double mu = 30, bulk = 300;
+  const tests::ElasticLaw law(mu, bulk);
+  core::Mat3 g;
+  g << 0.3, 0.2, -0.1, 0.4, -0.6, 0.15, 0.05, -0.3, 0.5;
+  auto options = tight();
+  options.element = GetParam();
+  // The predictor must not know the answer.
+  Boundary boundary = linear_motion(g);
+  boundary.mean_gradient = [](double) -> core::Mat3 { return core::Mat3::Identity(); };
+  const double size = 1e-3;
+  Model model(MPI_COMM_WORLD, box(law, 0.15), law, boundary, one_step(size), options, {});
+  const StepRecord r = model.step(size);
+  EXPECT_GT(r.newton_iterations, 0);
+  const mesh::Snapshot s = model.snapshot();
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank != 0) return;
+  const core::Mat3 e = 0.5 * size * (g + g.transpose());
+  const double p = bulk * std::log((core::Mat3::Identity() + size * g).determinant());
+  const auto expected = [&](int i, int j) {
+    return 2 * mu * (e(i, j) - (i == j ? e.trace() / 3 : 0)) + (i == j ? p : 0);
+  };
+  const double want[6] = {expected(0, 0), expected(1, 1), expected(2, 2),
+                          expected(1, 2), expected(2, 0), expected(0, 1)};
+  const auto* stress = s.find("cauchy_stress", mesh::Location::quadrature_point);
+  ASSERT_NE(stress, nullptr);
+  ASSERT_EQ(stress->values.size(), s.mesh.tetrahedra.size() * 24);
+  for (std::size_t i = 0; i < stress->values.size(); ++i)
+    ASSERT_NEAR(stress->values[i], want[i % 6], 1e-7 * bulk * size) << i;
+  for (int c = 0; c < 6; ++c) EXPECT_NEAR(r.stress[c], want[c], 1e-7 * bulk * size);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, PatchTest, ::testing::Values("mixed", "displacement"));
+
+TEST(Model, PlaneStrainOfAnElasticBlockBalances) {
+  const double mu = 30, bulk = 100;
+  const tests::ElasticLaw law(mu, bulk);
+  LoadingOptions loading = one_step(1e-4);
+  Model model(MPI_COMM_WORLD, box(law, 0.1), law, loading, tight(), {});
+  const StepRecord r = model.step(1e-4);
+  // Plane stress across x, plane strain across y: sigma_zz = -E/(1 - nu^2) eps.
+  const double E = 9 * bulk * mu / (3 * bulk + mu),
+               nu = (3 * bulk - 2 * mu) / (2 * (3 * bulk + mu));
+  EXPECT_NEAR(r.stress[2] / (-E / (1 - nu * nu) * 1e-4), 1, 1e-3);
+  EXPECT_NEAR(r.stress[1] / (-nu * E / (1 - nu * nu) * 1e-4), 1, 1e-3);
+  EXPECT_LT(std::abs(r.stress[0]), 1e-6 * std::abs(r.stress[2]));
+  EXPECT_NEAR(r.fz_z1, r.stress[2] * 2 * 1.5, 1e-3 * std::abs(r.fz_z1));
+  EXPECT_LT(r.fz_z1, 0);
+  EXPECT_NEAR(r.face_forces[4][2], -r.fz_z1, 1e-8 * std::abs(r.fz_z1));
+  EXPECT_NEAR(r.face_forces[2][1], -r.fy_y1, 1e-8 * std::abs(r.fz_z1));
+  EXPECT_NEAR(r.face_forces[5][0], 0, 1e-8 * std::abs(r.fz_z1));
+  EXPECT_DOUBLE_EQ(r.strain, 1e-4);
+  EXPECT_DOUBLE_EQ(r.time, 1e-4);
+}
+
+TEST(Model, AFailedPointCutsTheStepAndTheSizeRecovers) {
+  const tests::ElasticLaw law(30, 100, 1.5e-3);
+  LoadingOptions loading = one_step(4e-3);
+  int lines = 0;
+  Model model(MPI_COMM_WORLD, box(law), law, loading, SolverOptions{},
+              [&](const std::string&) { ++lines; });
+  const StepRecord r = model.step(4e-3);
+  EXPECT_EQ(r.cuts, 2);
+  EXPECT_DOUBLE_EQ(r.step_size, 1e-3);
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  EXPECT_EQ(lines, rank == 0 ? 2 : 0);
+  double strain = r.strain;
+  for (int i = 0; i < 10 && strain < 4e-3; ++i) strain = model.step(4e-3).strain;
+  EXPECT_EQ(strain, 4e-3);
+}
+
+TEST(Model, FailureEverywhereIsRecoverableAndLeavesTheState) {
+  const tests::ElasticLaw law(30, 100, 1e-9);
+  LoadingOptions loading = one_step(1e-3);
+  loading.min_strain_increment = 1e-4;
+  Model model(MPI_COMM_WORLD, box(law), law, loading, SolverOptions{}, {});
+  EXPECT_THROW(model.step(1e-3), core::RecoverableError);
+  EXPECT_EQ(model.strain(), 0);
+  const auto s = model.snapshot();
+  for (const auto& f : s.fields)
+    if (f.name == "displacement") {
+      for (double u : f.values) ASSERT_EQ(u, 0);
+    }
+}
+
+TEST(Model, AnInvertedElementCutsTheStep) {
+  const tests::ElasticLaw law(30, 100);
+  Boundary b = linear_motion(-core::Mat3::Identity() * 1e-3);
+  // Turned inside out on the way to s = 1, small for s <= 0.3.
+  b.all = [](const core::Vec3& x, double s) -> core::Vec3 {
+    return s > 0.3 ? core::Vec3(-x) : core::Vec3((1 - 1e-3 * s) * x);
+  };
+  Model model(MPI_COMM_WORLD, box(law), law, b, one_step(1.0), SolverOptions{}, {});
+  const StepRecord r = model.step(1.0);
+  EXPECT_EQ(r.cuts, 2);
+  EXPECT_DOUBLE_EQ(r.step_size, 0.25);
+}
+
+TEST(Model, ASnapshotWithoutStateIsRefusedOnEveryRank) {
+  const tests::ElasticLaw law(30, 100);
+  mesh::Snapshot s = box(law);
+  s.fields.clear();
+  EXPECT_THROW(Model(MPI_COMM_WORLD, s, law, LoadingOptions{}, SolverOptions{}, {}),
+               core::InternalError);
+}
+
+}  // namespace
+}  // namespace polyslip::solver
