@@ -5,19 +5,12 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
-#include "mesh/quadrature.hpp"
-#include "mesh/shape_functions.hpp"
 
 namespace polyslip::mesh {
 
 namespace {
 
 using core::Vec3;
-
-/// det J must be at least this part of the straight element's.
-constexpr double least_jacobian = 0.1;
-/// After so many halvings a mid node is put on its chord.
-constexpr int halvings = 8;
 
 /// Mid nodes by the corner nodes of their edge.
 class MidNodes {
@@ -107,28 +100,6 @@ void add_grains(Mesh& mesh, const BoundaryMesher& boundary, const BoundaryNumber
   }
 }
 
-/// Gradients where det J is looked at: quadrature points of both rules and the nodes.
-std::vector<std::array<Vec3, 10>> watched_points() {
-  std::vector<std::array<Vec3, 10>> gradients;
-  for (const auto& q : tet_quadrature_4()) gradients.push_back(tet10_gradients(q.xi));
-  for (const auto& q : tet_quadrature_15()) gradients.push_back(tet10_gradients(q.xi));
-  std::array<Vec3, 4> corners{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
-  for (const auto& c : corners) gradients.push_back(tet10_gradients(c));
-  for (const auto& [a, b] : tetrahedron_edges)
-    gradients.push_back(tet10_gradients((corners[a] + corners[b]) / 2));
-  return gradients;
-}
-
-bool is_fit(const Mesh& mesh, const std::array<int, 10>& t,
-            const std::vector<std::array<Vec3, 10>>& gradients) {
-  std::array<Vec3, 10> x;
-  for (int i = 0; i < 10; ++i) x[i] = mesh.nodes[t[i]] - mesh.nodes[t[0]];
-  const double straight = x[1].dot(x[2].cross(x[3]));
-  return std::all_of(gradients.begin(), gradients.end(), [&](const auto& g) {
-    return tet10_jacobian(x, g).determinant() >= least_jacobian * straight;
-  });
-}
-
 }  // namespace
 
 GrainSurface grain_surface(const Topology& topology, const BoundaryMesher& boundary,
@@ -176,47 +147,6 @@ Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
     for (int e = 0; e < 6; ++e)
       t[4 + e] = mids.of(t[tetrahedron_edges[e][0]], t[tetrahedron_edges[e][1]]);
   return mesh;
-}
-
-int straighten_where_needed(Mesh& mesh) {
-  if (mesh.order == 1) return 0;
-  struct Bulge {
-    Vec3 middle, offset;
-    int halved = 0;
-    bool curved = false;
-  };
-  std::vector<Bulge> bulges(mesh.nodes.size());
-  const auto add = [&](int a, int b, int mid) {
-    const Vec3 middle = (mesh.nodes[a] + mesh.nodes[b]) / 2, offset = mesh.nodes[mid] - middle;
-    const bool curved = offset.norm() > 1e-12 * (mesh.nodes[b] - mesh.nodes[a]).norm();
-    bulges[mid] = {middle, offset, 0, curved};
-  };
-  for (const auto& t : mesh.triangles)
-    for (int e = 0; e < 3; ++e) add(t[triangle_edges[e][0]], t[triangle_edges[e][1]], t[3 + e]);
-  const auto is_curved = [&](const std::array<int, 10>& t) {
-    return std::any_of(t.begin() + 4, t.end(), [&](int n) { return bulges[n].curved; });
-  };
-  const auto gradients = watched_points();
-  std::vector<char> moved(mesh.nodes.size(), false);
-  while (true) {
-    std::vector<char> marked(mesh.nodes.size(), false);
-    bool any = false;
-    for (const auto& t : mesh.tetrahedra) {
-      if (!is_curved(t) || is_fit(mesh, t, gradients)) continue;
-      for (int i = 4; i < 10; ++i)
-        if (bulges[t[i]].curved) marked[t[i]] = any = true;
-    }
-    if (!any) break;
-    for (int n = 0; n < mesh.node_count(); ++n) {
-      if (!marked[n]) continue;
-      auto& b = bulges[n];
-      b.offset /= 2;
-      b.curved = ++b.halved < halvings;
-      mesh.nodes[n] = b.curved ? Vec3(b.middle + b.offset) : b.middle;
-      moved[n] = true;
-    }
-  }
-  return static_cast<int>(std::count(moved.begin(), moved.end(), true));
 }
 
 }  // namespace polyslip::mesh

@@ -26,9 +26,4 @@ GrainSurface grain_surface(const Topology& topology, const BoundaryMesher& bound
 Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
               const std::vector<VolumeMesh>& volumes, const core::Vec3& scale, int order);
 
-/// Pulls mid nodes of curved edges half-way towards their chord, again and again, wherever det J at
-/// a point of the 4- or 15-point rule or at a node of an element is less than a small part of that
-/// of the straight element. Returns the number of mid nodes moved.
-int straighten_where_needed(Mesh& mesh);
-
 }  // namespace polyslip::mesh

@@ -195,24 +195,30 @@ bool BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
   problem.element_size = options_.element_size;
   problem.progression_factor = options_.progression_factor;
   problem.forbidden_edges = forbidden_[face];
-  for (int n : face_nodes(face, numbers)) {
+  const auto boundary_nodes = face_nodes(face, numbers);
+  for (int n : boundary_nodes) {
     problem.boundary.push_back(projection.project(positions[n]));
     problem.sizes.push_back(sizes[n]);
   }
   PlanarMesh plane;
   if (!mesh_polygon(problem, plane)) return false;
   const int domain = geometry_.topology.faces[face].domain_face;
-  const auto lift = [&](const Eigen::Vector2d& p) {
-    Vec3 x = projection.lift(p);
+  const auto in_plane = [&](Vec3 x) {
     if (domain >= 0) keep_in_planes(x, 1u << domain);
     return x;
   };
+  std::vector<Vec3> x;
   result.boundary_count = static_cast<int>(problem.boundary.size());
-  for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i)
-    result.inner_nodes.push_back(lift(plane.points[i]));
+  for (int n : boundary_nodes) x.push_back(positions[n]);
+  for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i) {
+    x.push_back(in_plane(projection.lift(plane.points[i])));
+    result.inner_nodes.push_back(x.back());
+  }
   result.triangles = plane.triangles;
-  for (const auto& [a, b, t, i] : inner_edges(plane.triangles))
-    result.inner_edges.push_back({a, b, lift((plane.points[a] + plane.points[b]) / 2)});
+  for (const auto& [a, b, t, i] : inner_edges(plane.triangles)) {
+    const Eigen::Vector2d above = (plane.points[a] + plane.points[b]) / 2;
+    result.inner_edges.push_back({a, b, in_plane(projection.nearest((x[a] + x[b]) / 2, above))});
+  }
   return true;
 }
 

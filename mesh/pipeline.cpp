@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "mesh/assembly.hpp"
 #include "mesh/boundary_mesh.hpp"
+#include "mesh/curved_elements.hpp"
 #include "mesh/self_intersection.hpp"
 
 namespace polyslip::mesh {
@@ -47,7 +48,7 @@ class Pipeline {
     std::vector<VolumeMesh> volumes;
     for (auto& r : results_) volumes.push_back(std::move(r.mesh));
     Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
-    report_.straightened = straighten_where_needed(mesh);
+    report_.straightened = mend_curved_elements(mesh);
     fill_report();
     tell(1.0);
     return mesh;

@@ -148,4 +148,28 @@ Vec3 FaceProjection::lift(const Vector2d& p) const {
   return nearest;
 }
 
+// Gauss-Newton steps with the tangents of the surface by differences; a step that leads away ends
+// it.
+Vec3 FaceProjection::nearest(const Vec3& target, const Vector2d& start) const {
+  constexpr int steps = 4;
+  constexpr double difference = 1e-4;  // of the distance
+  Vector2d p = start;
+  Vec3 x = lift(p);
+  const double first = (x - target).norm();
+  if (!(first > 0)) return x;
+  const double h = difference * first * scale_.maxCoeff();
+  for (int i = 0; i < steps; ++i) {
+    Eigen::Matrix<double, 3, 2> tangents;
+    tangents << (lift(p + Vector2d(h, 0)) - x) / h, (lift(p + Vector2d(0, h)) - x) / h;
+    const Eigen::Matrix2d metric = tangents.transpose() * tangents;
+    if (!(std::abs(metric.determinant()) > 1e-12 * metric.squaredNorm())) break;
+    const Vector2d step = metric.inverse() * (tangents.transpose() * (target - x));
+    const Vec3 next = lift(p + step);
+    if (!((next - target).norm() < (1 - 1e-6) * (x - target).norm())) break;
+    p += step;
+    x = next;
+  }
+  return x;
+}
+
 }  // namespace polyslip::mesh

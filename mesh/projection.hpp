@@ -25,6 +25,8 @@ class FaceProjection {
   Eigen::Vector2d project(const core::Vec3& position) const;
   /// The point of the quadratic surface above p; just outside of it the nearest triangle goes on.
   core::Vec3 lift(const Eigen::Vector2d& p) const;
+  /// The point of the surface nearest to `target` (unscaled distance), sought from above `start`.
+  core::Vec3 nearest(const core::Vec3& target, const Eigen::Vector2d& start) const;
 
  private:
   struct Box {

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "mesh/boundary_mesh.hpp"
+#include "mesh/curved_elements.hpp"
 #include "mesh/pipeline.hpp"
 #include "mesh/self_intersection.hpp"
 
@@ -287,6 +288,49 @@ TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
       EXPECT_NE(std::string(error.what()).find("refused"), std::string::npos) << error.what();
     }
   }
+}
+
+TEST(CurvedElements, AreMendedInsideFirstAndThenAtTheSurface) {
+  MeshingReport report;
+  const Mesh flat = star_mesh(cubes(1), options_of(0.5), report);
+  for (double bulge : {0.08, 0.25}) {
+    Mesh mesh = flat;
+    std::vector<char> corner(mesh.nodes.size(), false);
+    for (const auto& t : mesh.tetrahedra)
+      for (int i = 0; i < 4; ++i) corner[t[i]] = true;
+    for (const auto& t : mesh.triangles)
+      for (int i = 3; i < 6; ++i)
+        if (std::abs(mesh.nodes[t[i]][0] - 1) < 1e-12) mesh.nodes[t[i]][0] = 1 - bulge;
+    const Mesh bent = mesh;
+    double worst = 1;
+    for (int e = 0; e < mesh.element_count(); ++e)
+      worst = std::min(worst, least_jacobian_ratio(mesh, e));
+    const int moved = mend_curved_elements(mesh);
+    for (int e = 0; e < mesh.element_count(); ++e) EXPECT_GE(least_jacobian_ratio(mesh, e), 0.1);
+    ASSERT_NO_THROW(check(mesh));
+    int differ = 0, surface = 0;
+    std::vector<char> on_surface(mesh.nodes.size(), false);
+    for (const auto& t : mesh.triangles)
+      for (int n : t) on_surface[n] = true;
+    for (int n = 0; n < mesh.node_count(); ++n)
+      if (mesh.nodes[n] != bent.nodes[n]) {
+        EXPECT_FALSE(corner[n]);
+        ++differ;
+        surface += on_surface[n];
+      }
+    EXPECT_EQ(surface, moved);
+    EXPECT_LT(worst, 0.1);
+    EXPECT_GT(differ, 0);
+    if (bulge > 0.2) {
+      EXPECT_LT(worst, 0);
+      EXPECT_GT(moved, 0);
+    } else {
+      EXPECT_EQ(moved, 0) << "inner mid nodes are enough";
+    }
+  }
+  Mesh linear = flat;
+  linear.order = 1;
+  EXPECT_EQ(mend_curved_elements(linear), 0);
 }
 
 TEST(SelfIntersection, FindsTheTrianglesThatPierceEachOther) {
