@@ -6,8 +6,8 @@ namespace polyslip::drivers {
 
 double von_mises(const std::array<double, 6>& s) {
   const double mean = (s[0] + s[1] + s[2]) / 3;
-  const double normal = std::pow(s[0] - mean, 2) + std::pow(s[1] - mean, 2) +
-                        std::pow(s[2] - mean, 2);
+  const double normal =
+      std::pow(s[0] - mean, 2) + std::pow(s[1] - mean, 2) + std::pow(s[2] - mean, 2);
   const double shear = s[3] * s[3] + s[4] * s[4] + s[5] * s[5];
   return std::sqrt(1.5 * (normal + 2 * shear));
 }

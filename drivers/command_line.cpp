@@ -1,0 +1,116 @@
+#include "drivers/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "core/error.hpp"
+#include "core/version.hpp"
+
+namespace polyslip::drivers {
+namespace {
+
+void add_deck(CLI::App& verb, Command& c) {
+  verb.add_option("deck", c.deck, "Deck (TOML; docs/deck.md)")->required();
+}
+
+void add_threads(CLI::App& verb, Command& c) {
+  verb.add_option("--threads", c.threads, "OpenMP threads of a rank")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+void add_overwrite(CLI::App& verb, Command& c) {
+  verb.add_flag("--overwrite", c.overwrite, "Replace an earlier run in the folder");
+}
+
+void add_run(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand("run", "Grow, mesh, deform and remesh a polycrystal");
+  CLI::Option* deck = verb->add_option("deck", c.deck, "Deck (TOML; docs/deck.md)");
+  CLI::Option* out =
+      verb->add_option("--out", c.out, "Run folder (default: the deck's name and \"-run\", here)");
+  verb->add_option("--restart", c.restart, "Go on with the run in this folder")
+      ->excludes(deck)
+      ->excludes(out);
+  add_overwrite(*verb, c);
+  add_threads(*verb, c);
+  verb->callback([&c] {
+    c.verb = Verb::run;
+    if (c.deck.empty() && c.restart.empty())
+      throw CLI::ValidationError("run", "a deck, or --restart DIR, is required");
+    if (!c.restart.empty() && c.overwrite)
+      throw CLI::ValidationError("run", "--restart goes on with a run; it cannot --overwrite it");
+    if (c.out.empty() && c.restart.empty())
+      c.out = std::filesystem::path(c.deck).stem().string() + "-run";
+  });
+}
+
+void add_check(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand("check", "Check a deck; touches no file");
+  add_deck(*verb, c);
+  verb->callback([&c] { c.verb = Verb::check; });
+}
+
+void add_mesh(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand("mesh", "Grow and mesh a polycrystal only");
+  add_deck(*verb, c);
+  verb->add_option("--out", c.out, "Folder")->required();
+  add_overwrite(*verb, c);
+  add_threads(*verb, c);
+  verb->callback([&c] { c.verb = Verb::mesh; });
+}
+
+void add_convert(CLI::App& app, Command& c) {
+  CLI::App* verb =
+      app.add_subcommand("convert", "Write a stored state as a table, a row an element");
+  verb->add_option("folder", c.folder, "Run folder")->required();
+  verb->add_option("--at-strain", c.at_strain, "The stored state nearest to this strain")
+      ->required();
+  verb->add_option("--to", c.to, "CSV file")->required();
+  verb->add_option("--value", c.value, "Averages of elements, or values at their centroids")
+      ->check(CLI::IsMember({"average", "centroid"}))
+      ->capture_default_str();
+  add_overwrite(*verb, c);
+  verb->callback([&c] { c.verb = Verb::convert; });
+}
+
+void add_reference(CLI::App& app, Command& c) {
+  app.add_subcommand("reference", "Print the deck reference (docs/deck.md)")->callback([&c] {
+    c.verb = Verb::reference;
+  });
+}
+
+std::string one_line(std::string text) {
+  for (char& character : text)
+    if (character == '\n') character = ' ';
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+std::optional<Command> read_command_line(int argc, const char* const* argv) {
+  Command command;
+  CLI::App app(
+      "From random polycrystal to deformed texture: Voronoi, meshing, crystal-plasticity "
+      "finite elements, remeshing.",
+      "polyslip");
+  app.set_version_flag("--version", "polyslip " + core::version());
+  app.require_subcommand(1);
+  add_run(app, command);
+  add_check(app, command);
+  add_mesh(app, command);
+  add_convert(app, command);
+  add_reference(app, command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    app.exit(success, std::cout, std::cerr);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw core::InputError("polyslip: " + one_line(error.what()) + " (polyslip --help)");
+  }
+  return command;
+}
+
+}  // namespace polyslip::drivers

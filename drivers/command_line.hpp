@@ -1,0 +1,28 @@
+#pragma once
+// The command line.
+
+#include <optional>
+#include <string>
+
+namespace polyslip::drivers {
+
+enum class Verb { none, run, check, mesh, convert, reference };
+
+struct Command {
+  Verb verb = Verb::none;
+  std::string deck;
+  std::string out;  ///< --out; for `run` the default is the deck's name and "-run"
+  bool overwrite = false;
+  std::string restart;  ///< --restart
+  int threads = 1;
+  std::string folder;  ///< convert
+  double at_strain = 0;
+  std::string to;
+  std::string value = "average";
+};
+
+/// What the arguments ask for. Nothing, if they asked for help or the version, which is then
+/// printed. Throws InputError, one line, if they cannot be understood.
+std::optional<Command> read_command_line(int argc, const char* const* argv);
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,47 @@
+#include "drivers/mesh_verb.hpp"
+
+#include "core/deck.hpp"
+#include "core/file.hpp"
+#include "core/log.hpp"
+#include "core/timer.hpp"
+#include "core/version.hpp"
+#include "drivers/generate.hpp"
+#include "drivers/options.hpp"
+#include "results/folder.hpp"
+#include "results/names.hpp"
+#include "results/summary.hpp"
+
+namespace polyslip::drivers {
+
+void make_mesh(const std::string& deck_path, const std::string& folder, bool overwrite,
+               mesh::MesherPool& pool) {
+  const double wall_start = core::wall_seconds();
+  core::Deck deck = core::Deck::from_file(deck_path);
+  const Options options = read_options(deck, Purpose::mesh);
+  results::prepare_run_folder(folder, overwrite);
+  const auto path = [&folder](std::string_view name) { return results::in_folder(folder, name); };
+  core::write_file(path(results::deck_name), deck.text());
+  core::write_file(path(results::resolved_deck_name), deck.resolved());
+  core::Log log;
+  log.to_file(path(results::log_name));
+  core::StageTimes times;
+  const mesh::Mesh mesh = generate_polycrystal(options, folder, pool, log, times);
+
+  results::Summary summary;
+  summary.completed = true;
+  summary.grains = mesh.topology.cell_count();
+  summary.elements_initial = mesh.element_count();
+  summary.nodes_initial = mesh.node_count();
+  const mesh::QualitySummary quality = mesh::quality(mesh);
+  summary.min_radius_ratio = quality.min_radius_ratio;
+  summary.mean_radius_ratio = quality.mean_radius_ratio;
+  summary.cpu_s = {times.stages().begin(), times.stages().end()};
+  summary.wall_s = core::wall_seconds() - wall_start;
+  summary.peak_rss_mb = core::peak_rss_mb();
+  summary.version = core::version();
+  summary.seed = options.polycrystal.seed;
+  results::write_summary(path(results::summary_name), summary);
+  log.info("mesh: {}", path(results::mesh_name(0)));
+}
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,37 @@
+#pragma once
+// What a run has counted so far; it travels in each checkpoint, so that a restart counts on.
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "drivers/reload.hpp"
+#include "results/summary.hpp"
+#include "solver/model.hpp"
+
+namespace polyslip::drivers {
+
+struct RunProgress {
+  long rows = 0;        ///< of macro.csv
+  long states = 0;      ///< stored
+  int checkpoints = 0;  ///< written
+  long cuts = 0, newton_iterations = 0, linear_iterations = 0;
+  long elements_initial = 0;
+  bool just_remeshed = false;      ///< the next row is the first on a new mesh
+  std::array<double, 6> stress{};  ///< of the last step
+  std::vector<results::RemeshingSummary> remeshings;
+  ReloadTracker reload;
+  std::vector<std::pair<std::string, double>> cpu_s;  ///< of sessions before this one, by stage
+  double wall_s = 0;                                  ///< likewise
+
+  /// Counts an accepted step.
+  void add(const solver::StepRecord& step);
+
+  /// Text that holds all of it, numbers exactly.
+  std::string text() const;
+  /// Throws InternalError if the text is not one that `text` made.
+  static RunProgress from_text(const std::string& text);
+};
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,118 @@
+#include "drivers/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/version.hpp"
+#include "results/names.hpp"
+#include "results/picture.hpp"
+#include "results/state_file.hpp"
+
+namespace polyslip::drivers {
+namespace {
+
+/// Every stage that any rank measures, in the order of the pipeline.
+const std::vector<std::string>& stages() {
+  static const std::vector<std::string> names{"polycrystal", "meshing", "deformation", "remeshing",
+                                              "output"};
+  return names;
+}
+
+double seconds_of(const CpuSeconds& times, const std::string& stage) {
+  for (const auto& [name, seconds] : times)
+    if (name == stage) return seconds;
+  return 0;
+}
+
+}  // namespace
+
+std::string step_text(const solver::StepRecord& step, double seconds_left) {
+  return fmt::format(
+      "strain {:.5f}  stress {:7.3f} MPa  step {:.2e}  Newton {:2d}  linear {:3d}  "
+      "worst element {:.3f}{}  {} left",
+      step.strain, von_mises(step.stress), step.step_size, step.newton_iterations,
+      step.linear_iterations, step.min_jacobian_ratio,
+      step.cuts > 0 ? fmt::format("  {} cuts", step.cuts) : "", core::duration_text(seconds_left));
+}
+
+std::string remeshing_text(const remap::RemeshReport& r) {
+  return fmt::format(
+      "remeshing at strain {:.4g}: {} elements -> {}; worst radius ratio {:.3f} -> {:.3f}; grain "
+      "volumes changed by {:.3f} % rms, {:.3f} % at worst; mean orientations of grains moved by "
+      "{:.3f} degrees on average, {:.3f} at worst; {} faces copied",
+      r.strain, r.elements_before, r.elements_after, r.min_radius_ratio_before,
+      r.min_radius_ratio_after, 100 * r.rms_grain_volume_change, 100 * r.max_grain_volume_change,
+      r.mean_mean_rotation, r.max_mean_rotation, r.meshing.copied_faces.size());
+}
+
+results::RemeshingSummary remeshing_summary(const remap::RemeshReport& r) {
+  return {r.strain,
+          r.elements_before,
+          r.elements_after,
+          r.min_radius_ratio_before,
+          r.min_radius_ratio_after,
+          r.max_grain_volume_change,
+          std::nullopt};
+}
+
+CpuSeconds total_times(const CpuSeconds& earlier, const core::StageTimes& times) {
+  CpuSeconds result;
+  for (const std::string& stage : stages())
+    result.emplace_back(stage, seconds_of(earlier, stage) + times.seconds(stage));
+  return result;
+}
+
+CpuSeconds sum_over_ranks(MPI_Comm comm, const CpuSeconds& earlier, const core::StageTimes& times) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  CpuSeconds result = total_times(rank == 0 ? earlier : CpuSeconds{}, times);
+  for (auto& [stage, seconds] : result) seconds = sum_over_ranks(comm, seconds);
+  return result;
+}
+
+double sum_over_ranks(MPI_Comm comm, double value) {
+  double sum = 0;
+  MPI_Allreduce(&value, &sum, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return sum;
+}
+
+results::Summary summarise(const RunProgress& progress, const Options& options,
+                           const mesh::Snapshot& last) {
+  results::Summary s;
+  s.final_strain = last.strain;
+  s.grains = last.mesh.topology.cell_count();
+  s.elements_initial = progress.elements_initial;
+  s.elements_final = last.mesh.element_count();
+  s.nodes_final = last.mesh.node_count();
+  s.steps = progress.rows;
+  s.step_cuts = progress.cuts;
+  s.newton_iterations = progress.newton_iterations;
+  s.linear_iterations = progress.linear_iterations;
+  s.remeshings = progress.remeshings;
+  const auto& t = progress.stress;
+  s.stress_final_mpa = {{{t[0], t[5], t[4]}, {t[5], t[1], t[3]}, {t[4], t[3], t[2]}}};
+  s.version = core::version();
+  s.seed = options.polycrystal.seed;
+  return s;
+}
+
+void report_end(const std::string& folder, const results::StateSeries& states,
+                const results::Summary& summary, core::Log& log) {
+  const std::string picture = results::in_folder(folder, results::picture_name);
+  results::draw_picture(results::read_state(states.path(states.states().front())),
+                        results::read_state(states.path(states.states().back())), picture);
+  std::string remeshings;
+  for (const auto& r : *summary.remeshings)
+    remeshings += fmt::format("{}{:.4g}", remeshings.empty() ? "" : ", ", r.strain);
+  log.info(
+      "summary: {} grains, {} elements at strain {:.4g} after {} steps, {} cuts, {} Newton and {} "
+      "linear iterations; remeshed at {}; {:.0f} s of wall time",
+      *summary.grains, *summary.elements_final, *summary.final_strain, *summary.steps,
+      *summary.step_cuts, *summary.newton_iterations, *summary.linear_iterations,
+      remeshings.empty() ? "no strain" : remeshings, *summary.wall_s);
+  log.info("results: {}", results::in_folder(folder, results::xdmf_name));
+  log.info("picture: {}", picture);
+}
+
+}  // namespace polyslip::drivers
