@@ -1,0 +1,63 @@
+#include "drivers/run_progress.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+
+namespace polyslip::drivers {
+namespace {
+
+TEST(RunProgress, CountsStepsAndTheReloading) {
+  RunProgress p;
+  p.just_remeshed = true;
+  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, std::nullopt});
+  p.reload.start(0.3, 20);
+  solver::StepRecord step;
+  step.strain = 0.302;
+  step.stress = {0, 0, -40, 0, 0, 0};
+  step.newton_iterations = 3;
+  step.linear_iterations = 17;
+  step.cuts = 1;
+  p.add(step);
+  EXPECT_EQ(p.rows, 1);
+  EXPECT_EQ(p.cuts, 1);
+  EXPECT_EQ(p.newton_iterations, 3);
+  EXPECT_EQ(p.linear_iterations, 17);
+  EXPECT_FALSE(p.just_remeshed);
+  ASSERT_TRUE(p.remeshings[0].strain_to_reload);
+  EXPECT_NEAR(*p.remeshings[0].strain_to_reload, 0.002 * 0.99 / 2, 1e-12);
+}
+
+TEST(RunProgress, ComesBackFromItsText) {
+  RunProgress p;
+  p.rows = 41;
+  p.states = 5;
+  p.checkpoints = 3;
+  p.cuts = 2;
+  p.newton_iterations = 90;
+  p.linear_iterations = 700;
+  p.elements_initial = 3456;
+  p.just_remeshed = true;
+  p.stress = {0.1, 1.0 / 3, -27.123456789012345, 0, 1e-17, 2};
+  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, 0.0021});
+  p.remeshings.push_back({0.5, 12, 13, 0.1, 0.2, 1e-4, std::nullopt});
+  p.reload.start(0.5, 31.7);
+  p.cpu_s = {{"meshing", 1.25}, {"deformation", 17.5}};
+  p.wall_s = 12.5;
+  const RunProgress q = RunProgress::from_text(p.text());
+  EXPECT_EQ(q.text(), p.text());
+  EXPECT_EQ(q.stress, p.stress);
+  EXPECT_EQ(q.rows, 41);
+  EXPECT_TRUE(q.reload.state.active);
+  ASSERT_EQ(q.remeshings.size(), 2u);
+  EXPECT_EQ(*q.remeshings[0].strain_to_reload, 0.0021);
+  EXPECT_FALSE(q.remeshings[1].strain_to_reload);
+}
+
+TEST(RunProgress, RefusesOtherText) {
+  EXPECT_THROW(RunProgress::from_text("{}"), core::InternalError);
+  EXPECT_THROW(RunProgress::from_text("rows"), core::InternalError);
+}
+
+}  // namespace
+}  // namespace polyslip::drivers
