@@ -6,7 +6,7 @@
 
 namespace polyslip::drivers {
 
-enum class Verb { none, run, check, mesh, convert, reference };
+enum class Verb { none, run, check, mesh, convert };
 
 struct Command {
   Verb verb = Verb::none;

@@ -44,11 +44,13 @@ mesh::Mesh generate_polycrystal(const Options& options, const std::string& folde
   }();
   mesh::write_tess(tessellation, results::in_folder(folder, results::tessellation_name));
 
-  const auto measure = times.measure("meshing", true);
+  const auto measure = times.measure("meshing");
+  const double workers = pool.cpu_seconds();
   mesh::MeshingReport report;
   mesh::Mesh mesh =
       mesh::mesh_geometry(mesh::geometry_of(tessellation), options.mesh, core::Vec3::Ones(), pool,
                           report, [&log](double done) { log.progress("meshing", done, 1); });
+  times.add("meshing", pool.cpu_seconds() - workers);
   for (const std::string& fault : report.faults) log.warning(fault);
   log_meshing(mesh, report, options.mesh.meshers, log);
   mesh::check(mesh);

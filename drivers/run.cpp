@@ -76,6 +76,7 @@ class Run {
   double strain_start_ = 0;
   std::string deck_text_, resolved_, fingerprint_;
   Options options_;
+  std::vector<core::Quaternion> orientations_;
   std::vector<Event> events_;
   std::unique_ptr<material::CrystalLaw> law_;
   std::unique_ptr<solver::Model> model_;
@@ -111,6 +112,7 @@ void Run::read_deck() {
   on_root(comm_, [&] {
     text = core::read_text(file);
     understand();
+    orientations_ = grain_orientations(options_);
     deck_text_ = request_.restart ? core::read_text(path(results::deck_name)) : text;
   });
   broadcast(comm_, text);
@@ -139,7 +141,7 @@ mesh::Snapshot Run::begin_anew() {
   progress_.elements_initial = mesh.element_count();
   macro_ = results::MacroCsv::create(path(results::macro_name));
   states_.emplace(request_.folder);
-  return solver::initial_snapshot(std::move(mesh), make_orientations(options_), *law_);
+  return solver::initial_snapshot(std::move(mesh), orientations_, *law_);
 }
 
 mesh::Snapshot Run::take_up(const results::CheckpointFile& file) {
@@ -215,10 +217,12 @@ void Run::remesh(const mesh::Snapshot& old) {
   model_.reset();
   mesh::Snapshot fresh;
   on_root(comm_, [&] {
-    const auto measure = times_.measure("remeshing", true);
+    const auto measure = times_.measure("remeshing");
+    const double workers = pool_.cpu_seconds();
     remap::RemeshReport report;
     fresh = remap::remesh(old, options_.mesh, options_.remeshing, pool_, report,
                           [this](const std::string& line) { log_.warning(line); });
+    times_.add("remeshing", pool_.cpu_seconds() - workers);
     mesh::write_msh(fresh.mesh, path(results::mesh_name(fresh.mesh_number)));
     log_.info(remeshing_text(report));
     progress_.remeshings.push_back(remeshing_summary(report));
@@ -287,8 +291,8 @@ void Run::stop(const std::string& reason) {
     write_checkpoint(snapshot);
     finish(false);
   }
-  log_.error("{}: stopped; the last checkpoint is whole (polyslip run --restart {})",
-             request_.folder, request_.folder);
+  log_.error(fmt::format("{}: stopped; the last checkpoint is whole (polyslip run --restart {})",
+                         request_.folder, request_.folder));
 }
 
 int Run::go() {

@@ -100,8 +100,8 @@ results::Summary summarise(const RunProgress& progress, const Options& options,
 void report_end(const std::string& folder, const results::StateSeries& states,
                 const results::Summary& summary, core::Log& log) {
   const std::string picture = results::in_folder(folder, results::picture_name);
-  results::draw_picture(results::read_state(states.path(states.states().front())),
-                        results::read_state(states.path(states.states().back())), picture);
+  results::write_picture(picture, results::read_state(states.path(states.states().front())),
+                         results::read_state(states.path(states.states().back())));
   std::string remeshings;
   for (const auto& r : *summary.remeshings)
     remeshings += fmt::format("{}{:.4g}", remeshings.empty() ? "" : ", ", r.strain);

@@ -6,12 +6,14 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 
 #include "core/deck.hpp"
 #include "core/error.hpp"
 #include "drivers/command_line.hpp"
 #include "drivers/mesh_verb.hpp"
 #include "drivers/options.hpp"
+#include "drivers/orientations.hpp"
 #include "drivers/run.hpp"
 #include "results/convert.hpp"
 #include "solver/petsc_session.hpp"
@@ -60,7 +62,7 @@ int run(const Command& command) {
 
 int check(const Command& command) {
   core::Deck deck = core::Deck::from_file(command.deck);
-  drivers::read_options(deck, drivers::Purpose::run);
+  drivers::grain_orientations(drivers::read_options(deck, drivers::Purpose::run));
   std::cout << command.deck << ": fine\n";
   return drivers::exit_fine;
 }
@@ -86,9 +88,6 @@ int obey(const Command& command) {
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);
-    case Verb::reference:
-      std::cout << drivers::deck_reference();
-      return drivers::exit_fine;
     case Verb::none:
       break;
   }
