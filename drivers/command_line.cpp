@@ -74,6 +74,12 @@ void add_convert(CLI::App& app, Command& c) {
   verb->callback([&c] { c.verb = Verb::convert; });
 }
 
+void add_reference(CLI::App& app, Command& c) {
+  app.add_subcommand("reference", "Print the deck reference (docs/deck.md)")->callback([&c] {
+    c.verb = Verb::reference;
+  });
+}
+
 std::string one_line(std::string text) {
   for (char& character : text)
     if (character == '\n') character = ' ';
@@ -95,6 +101,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
   add_check(app, command);
   add_mesh(app, command);
   add_convert(app, command);
+  add_reference(app, command);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

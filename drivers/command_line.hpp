@@ -6,7 +6,7 @@
 
 namespace polyslip::drivers {
 
-enum class Verb { none, run, check, mesh, convert };
+enum class Verb { none, run, check, mesh, convert, reference };
 
 struct Command {
   Verb verb = Verb::none;

@@ -13,7 +13,6 @@
 #include "drivers/command_line.hpp"
 #include "drivers/mesh_verb.hpp"
 #include "drivers/options.hpp"
-#include "drivers/orientations.hpp"
 #include "drivers/run.hpp"
 #include "results/convert.hpp"
 #include "solver/petsc_session.hpp"
@@ -62,7 +61,7 @@ int run(const Command& command) {
 
 int check(const Command& command) {
   core::Deck deck = core::Deck::from_file(command.deck);
-  drivers::grain_orientations(drivers::read_options(deck, drivers::Purpose::run));
+  drivers::read_options(deck, drivers::Purpose::run);
   std::cout << command.deck << ": fine\n";
   return drivers::exit_fine;
 }
@@ -88,6 +87,9 @@ int obey(const Command& command) {
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);
+    case Verb::reference:
+      std::cout << drivers::deck_reference();
+      return drivers::exit_fine;
     case Verb::none:
       break;
   }
