@@ -214,7 +214,6 @@ bool Run::remeshing_is_due(const Event& event) const {
 }
 
 void Run::remesh(const mesh::Snapshot& old) {
-  model_.reset();
   mesh::Snapshot fresh;
   on_root(comm_, [&] {
     const auto measure = times_.measure("remeshing");
