@@ -150,38 +150,55 @@ double NewtonSolver::conjugate_residual() const {
   return sum(discretisation_.local().comm, work);
 }
 
+bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
+                                 const std::vector<double>& x0, const std::vector<double>& p0,
+                                 std::vector<double>& x, std::vector<double>& p,
+                                 NewtonReport& report) {
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = constrained_[i] ? x0[i] : x0[i] + lambda * increment_[i];
+  for (std::size_t e = 0; e < p.size(); ++e) p[e] = p0[e] + lambda * pressure_increment_[e];
+  const Evaluation outcome = discretisation_.evaluate(problem.old, x, p, problem.time_step);
+  if (outcome != Evaluation::fine) {
+    report.reason = describe(outcome);
+    return false;
+  }
+  update_residual(problem);
+  report.balance = measure(x);
+  return true;
+}
+
 bool NewtonSolver::search(const NewtonProblem& problem, const Balance& before,
                           std::vector<double>& x, std::vector<double>& p, NewtonReport& report) {
   constexpr int max_trials = 6;
-  constexpr double accepted_work = 0.8;  // of the work of the residual on the increment
+  // Where a point's rate falls, Newton's method overshoots and would go to and fro with the work of
+  // the residual on the increment changing sign: a fall of the residual's norm alone is no progress
+  // unless it is a large one.
+  constexpr double accepted_work = 0.5, accepted_norm = 0.25;
+  // After the last trial the best one serves if it is progress at all.
+  constexpr double useful_work = 0.9;
   const std::vector<double> x0 = x, p0 = p;
   const double work0 = conjugate_residual();
-  double lambda = 1;
-  std::string failure;
+  double lambda = 1, best_lambda = 0, best_work = useful_work * std::abs(work0);
   for (int trial = 0; trial < max_trials; ++trial) {
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = constrained_[i] ? x0[i] : x0[i] + lambda * increment_[i];
-    for (std::size_t e = 0; e < p.size(); ++e) p[e] = p0[e] + lambda * pressure_increment_[e];
     if (trial == 1) ++report.line_searches;
-    const Evaluation outcome = discretisation_.evaluate(problem.old, x, p, problem.time_step);
-    if (outcome != Evaluation::fine) {
-      failure = describe(outcome);
+    if (!try_increment(problem, lambda, x0, p0, x, p, report)) {
       lambda *= 0.5;
       continue;
     }
-    update_residual(problem);
-    report.balance = measure(x);
     const double work = conjugate_residual();
-    if (report.balance.free_norm <= before.free_norm ||
+    if (report.balance.free_norm <= accepted_norm * before.free_norm ||
         std::abs(work) <= accepted_work * std::abs(work0))
       return true;
-    failure = "the residual does not fall along the increment";
+    if (std::abs(work) < best_work) {
+      best_work = std::abs(work);
+      best_lambda = lambda;
+    }
+    report.reason = "the residual does not fall along the increment";
     // Secant on the work, kept within reason.
     const double secant = work0 > 0 && work < 0 ? work0 / (work0 - work) : 0.5;
     lambda *= std::clamp(secant, 0.1, 0.8);
   }
-  report.reason = failure;
-  return false;
+  return best_lambda > 0 && try_increment(problem, best_lambda, x0, p0, x, p, report);
 }
 
 }  // namespace polyslip::solver

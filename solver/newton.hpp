@@ -69,6 +69,10 @@ class NewtonSolver {
   bool converged(const Balance& balance, const NewtonProblem& problem) const;
   bool solve_linear(NewtonReport& report);
   double conjugate_residual() const;
+  /// Evaluates x0 + lambda * increment; false, with the reason, if that cannot be done.
+  bool try_increment(const NewtonProblem& problem, double lambda, const std::vector<double>& x0,
+                     const std::vector<double>& p0, std::vector<double>& x, std::vector<double>& p,
+                     NewtonReport& report);
   bool search(const NewtonProblem& problem, const Balance& before, std::vector<double>& x,
               std::vector<double>& p, NewtonReport& report);
 };
