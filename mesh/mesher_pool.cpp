@@ -17,8 +17,9 @@
 namespace polyslip::mesh {
 namespace {
 
-/// Grains that one child meshes one after the other. Fixed, as HXT's meshes depend on what its
-/// process meshed before.
+/// Grains that one child meshes one after the other: enough to hide the cost of a fork, few enough
+/// to keep the jobs busy. Fixed, so that no state of the libraries can make the number of jobs
+/// show.
 constexpr std::size_t batch_size = 25;
 
 constexpr double radius_ratio_floor = 0.2;

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/personality.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -74,9 +73,6 @@ void move_to_null(int fd, int flags) {
   while (n < 0 && errno == EINTR);
   if (n <= 0) _exit(0);
 
-  // Addresses without randomness, where the kernel lets us: one cause less for a mesh to differ.
-  const int persona = personality(0xffffffff);
-  if (persona >= 0) personality(static_cast<unsigned long>(persona) | ADDR_NO_RANDOMIZE);
   std::vector<std::string> environment = server_environment();
   std::vector<char*> variables;
   for (auto& entry : environment) variables.push_back(entry.data());

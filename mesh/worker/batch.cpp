@@ -14,7 +14,7 @@
 namespace polyslip::mesh::worker {
 namespace {
 
-constexpr rlim_t max_memory = rlim_t{8} << 30;  // bytes of address space of a child
+constexpr rlim_t max_memory = rlim_t{8} << 30;  // bytes that a child may write to
 
 /// Ends of the process: libraries are left as they are, their clean-up may crash.
 [[noreturn]] void end(bool well) { _exit(well ? 0 : 1); }
@@ -32,7 +32,7 @@ void limit_process() {
   rlimit limit{0, 0};
   setrlimit(RLIMIT_CORE, &limit);
   limit = {max_memory, max_memory};
-  setrlimit(RLIMIT_AS, &limit);
+  setrlimit(RLIMIT_DATA, &limit);
 }
 
 /// From now on, `seconds` of CPU for this process; a process that neither computes nor ends is

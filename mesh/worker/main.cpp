@@ -1,9 +1,6 @@
 // polyslip-mesher: the server that holds Gmsh and Netgen. It is started by polyslip with its
 // control socket as descriptor 3, has the libraries loaded and never meshes itself: for each batch
-// it forks a child, so that every batch starts from the same memory. It ends with its parent.
-//
-// The server allocates nothing between forks: a child's heap, and with it every order by address
-// inside the libraries, is then the same for any number of batches before it.
+// it forks a child, so that every batch starts from the same state. It ends with its parent.
 
 #include <poll.h>
 #include <sys/prctl.h>

@@ -100,6 +100,20 @@ TEST_P(EveryMesher, GivesTheSameForAnyNumberOfJobsAndAgain) {
   EXPECT_GT(pool->cpu_seconds(), 0);
 }
 
+TEST_P(EveryMesher, GivesAGrainTheSameMeshInAnyCompanyAndEnvironment) {
+  const auto requests = ellipsoids(8);
+  auto reversed = requests;
+  std::reverse(reversed.begin(), reversed.end());
+  PoolOptions options;
+  options.meshers = {GetParam()};
+  const auto forward = start_pool()->mesh(requests, options);
+  setenv("POLYSLIP_TEST_PADDING", std::string(5000, 'x').c_str(), 1);
+  auto backward = start_pool()->mesh(reversed, options);
+  unsetenv("POLYSLIP_TEST_PADDING");
+  std::reverse(backward.begin(), backward.end());
+  expect_identical(forward, backward);
+}
+
 INSTANTIATE_TEST_SUITE_P(Pool, EveryMesher, testing::ValuesIn(all_meshers), [](const auto& tested) {
   std::string name = tested.param;
   std::erase(name, '-');
