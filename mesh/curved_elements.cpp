@@ -63,15 +63,8 @@ class Mender {
       for (int e : bad) follow(e);
       bad = unfit(bad);
     }
-    for (bad = unfit(watched_); !bad.empty(); bad = unfit(watched_)) {
-      std::vector<int> marked;
-      for (int e : bad)
-        for (int i = 4; i < 10; ++i)
-          if (mids_[mesh_.tetrahedra[e][i]].curved) marked.push_back(mesh_.tetrahedra[e][i]);
-      std::sort(marked.begin(), marked.end());
-      marked.erase(std::unique(marked.begin(), marked.end()), marked.end());
-      for (int n : marked) pull_in(n);
-    }
+    for (bad = unfit(watched_); !bad.empty(); bad = unfit(watched_))
+      for (int e : bad) pull_in_best(e);
     return static_cast<int>(std::count_if(
         mids_.begin(), mids_.end(), [](const MidNode& m) { return m.on_surface && m.pulls > 0; }));
   }
@@ -145,6 +138,24 @@ class Mender {
     }
     std::sort(watched_.begin(), watched_.end());
     watched_.erase(std::unique(watched_.begin(), watched_.end()), watched_.end());
+  }
+
+  /// Pulls the curved mid node of an element that helps it most; all of them if none does.
+  void pull_in_best(int element) {
+    const auto& t = mesh_.tetrahedra[element];
+    double best_ratio = least_ratio_of(mesh_, t, gradients_);
+    int best = -1;
+    for (int i = 4; i < 10; ++i) {
+      const MidNode& m = mids_[t[i]];
+      if (!m.curved) continue;
+      mesh_.nodes[t[i]] = m.chord + pull * m.bulge;
+      const double ratio = least_ratio_of(mesh_, t, gradients_);
+      mesh_.nodes[t[i]] = m.chord + m.bulge;
+      if (ratio > best_ratio) best_ratio = ratio, best = t[i];
+    }
+    if (best >= 0) return pull_in(best);
+    for (int i = 4; i < 10; ++i)
+      if (mids_[t[i]].curved) pull_in(t[i]);
   }
 
   void pull_in(int mid) {

@@ -11,7 +11,8 @@ double least_jacobian_ratio(const Mesh& mesh, int element);
 
 /// Mends elements whose ratio is below 0.1. First the mid nodes of their edges inside a grain
 /// follow the curved ones around them, which leaves the surfaces as they are; then, where that is
-/// not enough, mid nodes on surfaces are pulled towards their chord by a quarter, again and again.
+/// not enough, mid nodes on surfaces are pulled towards their chord by a quarter, the one that
+/// helps most first, again and again.
 /// Straight elements must be positive. Returns the number of mid nodes of surfaces moved.
 int mend_curved_elements(Mesh& mesh);
 

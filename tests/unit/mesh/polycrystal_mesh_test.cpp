@@ -1,0 +1,102 @@
+// The whole pipeline with the real meshers: first mesh and remeshing of a polycrystal.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/geometry.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+std::unique_ptr<MesherPool> start_pool() {
+  return MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
+}
+
+Tessellation polycrystal(int grains, std::uint64_t seed) {
+  auto t = voronoi_tessellation(PolycrystalOptions{.grains = grains, .seed = seed});
+  regularise(t, RegularisationOptions{});
+  return t;
+}
+
+void expect_identical(const Mesh& a, const Mesh& b) {
+  EXPECT_EQ(a.tetrahedra, b.tetrahedra);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_EQ(a.nodes, b.nodes);
+}
+
+/// Shears of a grain's wavelength whose determinant is one, then plane strain.
+void deform(Mesh& mesh, double strain, double amplitude) {
+  for (auto& x : mesh.nodes) {
+    x[0] += amplitude * std::sin(2.9 * x[1] + 0.3) * std::sin(3.1 * x[2]);
+    x[1] += amplitude * std::sin(3.3 * x[2] + 0.7) * std::cos(2.7 * x[0]);
+    x[2] += amplitude * std::cos(3.0 * x[0] + 0.2) * std::sin(2.8 * x[1]);
+    x = x.cwiseProduct(Vec3(std::exp(strain), 1, std::exp(-strain)));
+  }
+}
+
+TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
+  const auto pool = start_pool();
+  for (double size : {0.5, 0.9}) {
+    const auto tessellation = polycrystal(30, 1);
+    MeshingOptions options;
+    options.element_size = size;
+    MeshingReport report;
+    std::vector<double> progress;
+    const Mesh mesh = mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), *pool, report,
+                                    [&](double p) { progress.push_back(p); });
+    ASSERT_NO_THROW(check(mesh));
+    const auto volumes = grain_volumes(mesh);
+    EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0) / 30, 1, 1e-12);
+    for (int c = 0; c < 30; ++c) EXPECT_NEAR(volumes[c], cell_volume(tessellation, c), 0.02);
+    EXPECT_GT(quality(mesh).min_radius_ratio, 0.08);
+    EXPECT_GT(quality(mesh).mean_radius_ratio, 0.6);
+    if (size == 0.5) {
+      EXPECT_GT(report.mean_O, 0.88);
+    }
+    EXPECT_EQ(std::accumulate(report.wins.begin(), report.wins.end(), 0), 30);
+    EXPECT_TRUE(report.faults.empty());
+    EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
+    EXPECT_EQ(progress.back(), 1.0);
+  }
+}
+
+TEST(PolycrystalMesh, IsTheSameForAnyNumberOfWorkers) {
+  const auto pool = start_pool();
+  const auto geometry = geometry_of(polycrystal(12, 4));
+  MeshingOptions options;
+  MeshingReport report;
+  options.jobs = 1;
+  const Mesh one = mesh_geometry(geometry, options, Vec3::Ones(), *pool, report);
+  options.jobs = 3;
+  expect_identical(one, mesh_geometry(geometry, options, Vec3::Ones(), *pool, report));
+}
+
+TEST(PolycrystalMesh, RemeshingKeepsGrainVolumesAndImprovesTheElements) {
+  const auto pool = start_pool();
+  MeshingOptions options;
+  MeshingReport report;
+  Mesh old = mesh_geometry(geometry_of(polycrystal(30, 2)), options, Vec3::Ones(), *pool, report);
+  deform(old, 0.3, 0.08);
+  const auto before = grain_volumes(old);
+  for (const Vec3& scale : {Vec3(1, 1, 1), Vec3(std::exp(-0.3), 1, std::exp(0.3))}) {
+    const Mesh mesh = mesh_geometry(geometry_of(old), options, scale, *pool, report);
+    ASSERT_NO_THROW(check(mesh));
+    const auto after = grain_volumes(mesh);
+    double worst = 0;
+    for (int c = 0; c < 30; ++c) worst = std::max(worst, std::abs(after[c] / before[c] - 1));
+    EXPECT_LT(worst, 0.004);
+    EXPECT_GT(worst, 0);
+    EXPECT_TRUE(report.copied_faces.empty());
+    if (scale == Vec3(1, 1, 1)) {
+      EXPECT_GT(quality(mesh).mean_radius_ratio, quality(old).mean_radius_ratio + 0.03);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace polyslip::mesh
