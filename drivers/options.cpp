@@ -209,6 +209,13 @@ remap::RemeshingOptions read_remeshing(Deck& deck) {
                                .exclusive_min = true,
                                .increasing = true,
                                .help = "Strains at which to remesh; below final_strain."});
+  o.orthotropic_share = t.number(
+      "orthotropic_share",
+      {.fallback = o.orthotropic_share,
+       .min = 0,
+       .max = 1,
+       .help = "Share of the shortening that element sizes follow: 1 keeps the number of elements "
+               "across a direction in which the polycrystal was compressed, 0 keeps their size."});
   o.max_grain_volume_change = t.number("max_grain_volume_change",
                                        {.fallback = o.max_grain_volume_change,
                                         .min = 0,

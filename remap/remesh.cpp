@@ -2,9 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "remap/audit.hpp"
 
 namespace polyslip::remap {
+
+core::Vec3 meshing_scale(const mesh::Mesh& mesh, double orthotropic_share) {
+  Eigen::AlignedBox3d box;
+  for (const core::Vec3& x : mesh.nodes) box.extend(x);
+  const core::Vec3 stretch = mesh.size.cwiseQuotient(box.sizes());
+  core::Vec3 scale;
+  for (int a = 0; a < 3; ++a) scale[a] = std::pow(std::max(1.0, stretch[a]), orthotropic_share);
+  return scale;
+}
 
 mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& meshing,
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
@@ -12,8 +24,8 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
   report = {};
   report.strain = old.strain;
   const mesh::Geometry geometry = mesh::geometry_of(old.mesh);
-  mesh::Mesh mesh =
-      mesh::mesh_geometry(geometry, meshing, core::Vec3::Ones(), pool, report.meshing);
+  mesh::Mesh mesh = mesh::mesh_geometry(
+      geometry, meshing, meshing_scale(old.mesh, options.orthotropic_share), pool, report.meshing);
   for (const std::string& fault : report.meshing.faults) log(fault);
   for (int face : report.meshing.copied_faces)
     log(fmt::format("face {}: not remeshed, its old mesh is kept", face + 1));

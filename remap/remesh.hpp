@@ -14,6 +14,10 @@ namespace polyslip::remap {
 /// What a deck asks for in [remeshing].
 struct RemeshingOptions {
   std::vector<double> at_strains{0.3};
+  /// Share of the shortening that element sizes follow: 1 keeps the number of elements across a
+  /// direction in which the polycrystal was compressed (the paper, section 3.1), 0 keeps their
+  /// size.
+  double orthotropic_share = 1;
   double max_grain_volume_change =
       0.005;  ///< relative; beyond it the run stops and names the grain
 };
@@ -33,6 +37,10 @@ struct RemeshReport {
 mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& meshing,
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
                       const std::function<void(const std::string&)>& log);
+
+/// The frame in which sizes and projections are taken: (size / extent)^share along each axis along
+/// which the polycrystal's extent has become less than its size at zero strain, 1 along the others.
+core::Vec3 meshing_scale(const mesh::Mesh& mesh, double orthotropic_share);
 
 /// State and nodal fields of `old` on `mesh` (0-order by centroid within the same grain; nodal
 /// fields by shape functions; see core::Transport).

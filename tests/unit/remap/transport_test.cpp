@@ -112,6 +112,14 @@ TEST(PointVolumes, AddUpToTheBox) {
   EXPECT_NEAR(sum, 2, 1e-12);
 }
 
+TEST(MeshingScale, UndoesTheShorteningByItsShare) {
+  mesh::Mesh mesh = tests::box_mesh({2, 1, 1}, Vec3(2, 1, 1));
+  for (Vec3& x : mesh.nodes) x = x.cwiseProduct(Vec3(1.25, 1, 0.8));
+  EXPECT_LT((meshing_scale(mesh, 1) - Vec3(1, 1, 1.25)).norm(), 1e-14);
+  EXPECT_LT((meshing_scale(mesh, 0.5) - Vec3(1, 1, std::sqrt(1.25))).norm(), 1e-14);
+  EXPECT_EQ(meshing_scale(mesh, 0), Vec3(1, 1, 1));
+}
+
 TEST(Audit, NamesTheGrainWhoseVolumeChanged) {
   const mesh::Snapshot old = old_snapshot();
   mesh::Snapshot fresh = transport(old, tests::box_mesh({6, 3, 3}, Vec3(2, 1, 1), 2));
