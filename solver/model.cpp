@@ -9,6 +9,7 @@
 #include "solver/exchange.hpp"
 #include "solver/newton.hpp"
 #include "solver/partition.hpp"
+#include "solver/predictor.hpp"
 #include "solver/snapshot_fields.hpp"
 #include "solver/step_control.hpp"
 
@@ -56,11 +57,11 @@ struct Model::Impl {
   Distribution distribution;
   NodeExchange exchange;
   Configuration now;
-  std::vector<double> displacement;                      // [local_nodes][3]
-  std::vector<double> displacement_rate, pressure_rate;  // of the predictor, per unit strain
+  std::vector<double> displacement;  // [local_nodes][3]
   std::vector<double> element_stress, point_stress, volumes;
   double strain = 0, time = 0;
   StepControl control;
+  Predictor predictor;
   std::unique_ptr<Discretisation> discretisation;
   std::unique_ptr<NewtonSolver> newton;
 
@@ -78,13 +79,15 @@ struct Model::Impl {
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
         exchange(distribution.local()),
-        control(load) {
+        control(load),
+        predictor(3 * distribution.local().node_global.size(),
+                  distribution.local().elements.size()) {
     if (!mixed && options.element != "displacement")
       throw core::InternalError("Model: no element \"" + options.element + "\"");
     strain = broadcast(comm, base.strain);
     time = broadcast(comm, base.time);
     read_configuration();
-    read_history();
+    restore_history();
     discretisation =
         std::make_unique<Discretisation>(distribution.local(), exchange, law, mixed, now.x,
                                          read(field::reference_volume, Location::element, 1));
@@ -135,15 +138,31 @@ struct Model::Impl {
     if (displacement.empty()) displacement.assign(now.x.size(), 0);
   }
 
-  void read_history() {
-    displacement_rate = read(field::displacement_rate, Location::node, 3);
-    if (displacement_rate.empty()) displacement_rate.assign(now.x.size(), 0);
-    pressure_rate = read(field::pressure_rate, Location::element, 1);
-    if (pressure_rate.empty()) pressure_rate.assign(now.p.size(), 0);
-    const auto stored = base.history.find(field::step_history);
-    const bool found = broadcast(comm, root && stored != base.history.end());
-    if (!found) return;
-    control.restore({broadcast(comm, root && stored->second.size() == 1 ? stored->second[0] : 0)});
+  /// A history of `count` numbers on every rank; empty if there is none.
+  std::vector<double> read_history(const std::string& name, std::size_t count) const {
+    std::vector<double> values;
+    on_root(comm, [&] {
+      const auto stored = base.history.find(name);
+      if (stored == base.history.end()) return;
+      values = stored->second;
+      if (values.size() != count)
+        throw core::InternalError("Model: the stored history \"" + name + "\" is damaged");
+    });
+    const bool found = broadcast(comm, !values.empty());
+    if (!found) return {};
+    values.resize(count);
+    for (double& v : values) v = broadcast(comm, v);
+    return values;
+  }
+
+  void restore_history() {
+    const auto size = read_history(field::step_history, 1);
+    if (!size.empty()) control.restore(size);
+    const auto steps = read_history(field::predictor_steps, 2);
+    if (steps.empty()) return;
+    predictor.restore(read(field::rate, Location::node, 3),
+                      read(field::previous_rate, Location::node, 3),
+                      read(field::pressure_rate, Location::element, 1), steps[0], steps[1]);
   }
 
   /// Positions of the homogeneous motion from the current strain to `end`.
@@ -157,33 +176,32 @@ struct Model::Impl {
     return x;
   }
 
-  /// Homogeneous motion, plus the last step's departure from it at the same rate; prescribed dofs
-  /// exact.
-  std::vector<double> predict_positions(double end) const {
-    auto x = homogeneous(end);
+  /// x, p: homogeneous motion plus the expected departure from it; prescribed dofs exact.
+  void predict(double end, std::vector<double>& x, std::vector<double>& p) const {
+    x = homogeneous(end);
+    p = now.p;
+    predictor.extrapolate(end - strain, x, p);
     const auto& local = distribution.local();
     for (std::size_t dof = 0; dof < x.size(); ++dof) {
       const std::size_t n = dof / 3;
-      if (!newton->constrained()[dof]) {
-        x[dof] += displacement_rate[dof] * (end - strain);
-        continue;
-      }
+      if (!newton->constrained()[dof]) continue;
       const core::Vec3 initial(now.x[3 * n] - displacement[3 * n],
                                now.x[3 * n + 1] - displacement[3 * n + 1],
                                now.x[3 * n + 2] - displacement[3 * n + 2]);
       x[dof] = boundary.position(local.node_faces[n], static_cast<int>(dof % 3), initial, end);
     }
-    return x;
   }
 
   void accept(const std::vector<double>& x, const std::vector<double>& p, double end) {
     const double increment = end - strain;
-    const auto plain = homogeneous(end);
+    auto departure = homogeneous(end);
+    std::vector<double> change(p.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
-      displacement_rate[i] = (x[i] - plain[i]) / increment;
+      departure[i] = x[i] - departure[i];
       displacement[i] += x[i] - now.x[i];
     }
-    for (std::size_t e = 0; e < p.size(); ++e) pressure_rate[e] = (p[e] - now.p[e]) / increment;
+    for (std::size_t e = 0; e < p.size(); ++e) change[e] = p[e] - now.p[e];
+    predictor.record(departure, change, increment);
     discretisation->accept(x, p, now);
     element_stress = discretisation->element_stress();
     point_stress = discretisation->cauchy_stress();
@@ -218,9 +236,8 @@ struct Model::Impl {
     for (;;) {
       const double end = control.next_end(strain, target);
       const double increment = end - strain;
-      auto x = predict_positions(end);
-      auto p = now.p;
-      for (std::size_t e = 0; e < p.size(); ++e) p[e] += pressure_rate[e] * increment;
+      std::vector<double> x, p;
+      predict(end, x, p);
       const NewtonProblem problem{now, increment / loading.strain_rate, increment, {}};
       const NewtonReport report = newton->solve(problem, x, p);
       counters.newton_iterations += report.iterations;
@@ -265,6 +282,7 @@ struct Model::Impl {
       out.strain = strain;
       out.time = time;
       out.history[field::step_history] = control.history();
+      out.history[field::predictor_steps] = predictor.steps();
       out.history[field::partition_ranks] = {static_cast<double>(size_of(comm))};
     }
     add(out, field::displacement, Location::node, 3, "L", Transport::shape_functions,
@@ -281,11 +299,13 @@ struct Model::Impl {
         "minus the mean of the normal stresses", elements(pressures(), 1));
     add(out, field::partition, Location::element, 1, "1", Transport::not_carried,
         "rank that works on the element", {ranks.begin(), ranks.end()});
-    add(out, field::displacement_rate, Location::node, 3, "L", Transport::not_carried,
-        "predictor: departure from the homogeneous motion per unit strain",
-        nodes(displacement_rate));
+    add(out, field::rate, Location::node, 3, "L", Transport::not_carried,
+        "predictor: departure from the homogeneous motion per unit strain, last step",
+        nodes(predictor.rate()));
+    add(out, field::previous_rate, Location::node, 3, "L", Transport::not_carried,
+        "predictor: the same in the step before", nodes(predictor.previous_rate()));
     add(out, field::pressure_rate, Location::element, 1, "MPa", Transport::not_carried,
-        "predictor: mean stress per unit strain", elements(pressure_rate, 1));
+        "predictor: mean stress per unit strain", elements(predictor.pressure_rate(), 1));
     if (!mixed)
       add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
           "volume over volume at zero pressure", elements(now.volume_ratio, element_points));
@@ -318,7 +338,7 @@ Model::~Model() = default;
 double Model::strain() const { return impl_->strain; }
 double Model::time() const { return impl_->time; }
 StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
-void Model::drop_setup() { impl_->newton->drop_setup(); }
+void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
 
 mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,

@@ -66,6 +66,11 @@ NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& bound
   floor_force_ = 1e-6 * discretisation_.law().shear_modulus() * length_ * length_;
 }
 
+void NewtonSolver::drop_setup(const std::vector<double>& x) {
+  linear_.reset();
+  linear_ = std::make_unique<LinearSolver>(make_layout(discretisation_, constrained_, x));
+}
+
 NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<double>& x,
                                  std::vector<double>& p) {
   NewtonReport report;
@@ -89,6 +94,7 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
     if (!search(problem, report.balance, x, p, report)) return report;
   }
   report.converged = true;
+  report.reason.clear();
   return report;
 }
 
@@ -178,6 +184,7 @@ bool NewtonSolver::search(const NewtonProblem& problem, const Balance& before,
   constexpr double useful_work = 0.9;
   const std::vector<double> x0 = x, p0 = p;
   const double work0 = conjugate_residual();
+  double low = 0, work_low = work0, high = 1, work_high = 0;  // of the root of the work
   double lambda = 1, best_lambda = 0, best_work = useful_work * std::abs(work0);
   for (int trial = 0; trial < max_trials; ++trial) {
     if (trial == 1) ++report.line_searches;
@@ -194,9 +201,17 @@ bool NewtonSolver::search(const NewtonProblem& problem, const Balance& before,
       best_lambda = lambda;
     }
     report.reason = "the residual does not fall along the increment";
-    // Secant on the work, kept within reason.
-    const double secant = work0 > 0 && work < 0 ? work0 / (work0 - work) : 0.5;
-    lambda *= std::clamp(secant, 0.1, 0.8);
+    // Secant on the work inside its bracket [low, high], once there is one.
+    if (work < 0) {
+      high = lambda;
+      work_high = work;
+    } else {
+      low = lambda;
+      work_low = work;
+    }
+    const bool bracketed = work_low > 0 && work_high < 0;
+    const double secant = bracketed ? work_low / (work_low - work_high) : 0;
+    lambda = bracketed ? low + std::clamp(secant, 0.1, 0.9) * (high - low) : 0.5 * lambda;
   }
   return best_lambda > 0 && try_increment(problem, best_lambda, x0, p0, x, p, report);
 }

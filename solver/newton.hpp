@@ -48,8 +48,8 @@ class NewtonSolver {
   /// x, p: the predictor on entry (prescribed dofs exact), the solution on return. On success the
   /// discretisation holds the evaluation at the solution. Collective; the same report on each rank.
   NewtonReport solve(const NewtonProblem& problem, std::vector<double>& x, std::vector<double>& p);
-  /// See LinearSolver::drop_setup.
-  void drop_setup() { linear_->drop_setup(); }
+  /// Starts the linear solver anew at positions x, as a restart does. Collective.
+  void drop_setup(const std::vector<double>& x);
 
   const std::vector<std::uint8_t>& constrained() const { return constrained_; }
 

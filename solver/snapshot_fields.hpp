@@ -19,9 +19,11 @@ inline const std::string pressure = "pressure";
 inline const std::string cauchy_stress = "cauchy_stress";
 inline const std::string partition = "partition";
 inline const std::string volume_ratio = "volume_ratio";  // displacement element
-inline const std::string displacement_rate = "solver_displacement_rate";
+inline const std::string rate = "solver_rate";
+inline const std::string previous_rate = "solver_previous_rate";
 inline const std::string pressure_rate = "solver_pressure_rate";
 inline const std::string step_history = "solver_step";                // StepControl::history
+inline const std::string predictor_steps = "solver_predictor_steps";  // Predictor::steps
 inline const std::string partition_ranks = "solver_partition_ranks";  // {ranks}
 }  // namespace field
 
