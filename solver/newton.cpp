@@ -173,8 +173,8 @@ bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
   return true;
 }
 
-bool NewtonSolver::search(const NewtonProblem& problem, const Balance& before,
-                          std::vector<double>& x, std::vector<double>& p, NewtonReport& report) {
+bool NewtonSolver::search(const NewtonProblem& problem, Balance before, std::vector<double>& x,
+                          std::vector<double>& p, NewtonReport& report) {
   constexpr int max_trials = 6;
   // Where a point's rate falls, Newton's method overshoots and would go to and fro with the work of
   // the residual on the increment changing sign: a fall of the residual's norm alone is no progress

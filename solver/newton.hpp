@@ -73,7 +73,7 @@ class NewtonSolver {
   bool try_increment(const NewtonProblem& problem, double lambda, const std::vector<double>& x0,
                      const std::vector<double>& p0, std::vector<double>& x, std::vector<double>& p,
                      NewtonReport& report);
-  bool search(const NewtonProblem& problem, const Balance& before, std::vector<double>& x,
+  bool search(const NewtonProblem& problem, Balance before, std::vector<double>& x,
               std::vector<double>& p, NewtonReport& report);
 };
 
