@@ -12,7 +12,7 @@ namespace polyslip::solver {
 class Chebyshev {
  public:
   struct Settings {
-    double safety = 1.4;  ///< on the estimated largest eigenvalue
+    double safety = 1.3;  ///< on the estimated largest eigenvalue
     double lower = 0.1;   ///< end of the interval that is damped, relative to its upper end
     int arnoldi_steps = 10;
   };

@@ -37,17 +37,18 @@ void CoarseSolver::create(Mat A, const std::vector<double>& coordinates) {
     return;
   }
   attach_rigid_body_modes(A, coordinates);
-  if (settings_.cycles > 1) {
-    check(KSPSetType(ksp_.get(), KSPRICHARDSON));
+  if (settings_.iterations > 1) {
+    check(KSPSetType(ksp_.get(), KSPGMRES));
     check(KSPSetNormType(ksp_.get(), KSP_NORM_NONE));
     check(KSPSetTolerances(ksp_.get(), PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT,
-                           settings_.cycles));
+                           settings_.iterations));
   } else {
     check(KSPSetType(ksp_.get(), KSPPREONLY));
   }
   check(PCSetType(pc, PCGAMG));
   check(PCGAMGSetType(pc, PCGAMGAGG));
-  check(PCGAMGSetNSmooths(pc, 1));
+  check(PCGAMGSetNSmooths(pc, settings_.prolongation_smoothings));
+  check(PCGAMGSetAggressiveLevels(pc, settings_.aggressive_levels));
   PetscReal threshold = settings_.threshold;
   check(PCGAMGSetThreshold(pc, &threshold, 1));
   check(PCGAMGSetReuseInterpolation(pc, PETSC_TRUE));

@@ -7,14 +7,17 @@
 
 namespace polyslip::solver {
 
-/// Approximate inverse of the vertex level's matrix: an LU factorisation of a small one, else a
-/// cycle of smoothed aggregation (PETSc's GAMG) with the rigid-body modes. Sequential.
+/// Approximate inverse of the vertex level's matrix: an LU factorisation of a small one, else a few
+/// GMRES iterations with a cycle of smoothed aggregation (PETSc's GAMG, rigid-body modes).
+/// Sequential.
 class CoarseSolver {
  public:
   struct Settings {
-    PetscInt max_direct_dofs = 3000;  ///< LU up to this size
-    int cycles = 1;                   ///< of the aggregation hierarchy
-    double threshold = 0.01;          ///< for dropping couplings when aggregating
+    PetscInt max_direct_dofs = 1000;  ///< LU up to this size
+    int iterations = 4;               ///< of GMRES; with 1 a single cycle is taken
+    int prolongation_smoothings = 1;  ///< of the aggregates' rigid-body modes
+    int aggressive_levels = 10;       ///< finest levels that aggregate neighbours of neighbours
+    double threshold = 0.01;          ///< relative size of the couplings dropped when aggregating
   };
   CoarseSolver() = default;
   explicit CoarseSolver(const Settings& settings) : settings_(settings) {}

@@ -70,6 +70,8 @@ struct LinearSolver::Impl {
   KspHandle ksp;
   VecHandle rhs, solution;
   std::optional<Multigrid> multigrid;
+  double first_rate = 0;  // of convergence on the present aggregates; 0: not known yet
+  bool slow = false;
 
   Impl(LinearLayout l, const LinearSettings& s)
       : layout(std::move(l)), settings(s), in(layout), out(layout) {
@@ -169,6 +171,8 @@ struct LinearSolver::Impl {
   void take_matrix(Mat given, MatHandle& held);
   bool finite() const;
   void set_right_side(Vec ru, Vec rp);
+  LinearReport run_ksp(double norm, double tolerance, int max_iterations);
+  void judge(const LinearReport& report);
 };
 
 LinearSolver::LinearSolver(LinearLayout layout, const LinearSettings& settings)
@@ -252,6 +256,11 @@ void LinearSolver::set_blocks(const LinearBlocks& blocks) {
   s.usable = s.finite();
   if (!s.usable) return;
   if (!s.multigrid) s.multigrid.emplace(s.layout, s.settings.multigrid);
+  if (s.slow) {
+    s.multigrid->renew_hierarchy();
+    s.first_rate = 0;
+    s.slow = false;
+  }
   s.multigrid->set_matrix(s.A_augmented.get());
 }
 
@@ -271,6 +280,36 @@ void LinearSolver::Impl::set_right_side(Vec ru, Vec rp) {
   check(VecRestoreArrayWrite(rhs.get(), &values));
 }
 
+/// `norm`: that of the right side.
+LinearReport LinearSolver::Impl::run_ksp(double norm, double tolerance, int max_iterations) {
+  create_ksp();
+  check(KSPGMRESSetRestart(ksp.get(), max_iterations));
+  check(KSPSetTolerances(ksp.get(), tolerance, 1e-300, 1e10, max_iterations));
+  const PetscErrorCode code = KSPSolve(ksp.get(), rhs.get(), solution.get());
+  if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
+  check(code);
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  PetscReal residual = 0;
+  check(KSPGetConvergedReason(ksp.get(), &reason));
+  check(KSPGetIterationNumber(ksp.get(), &iterations));
+  check(KSPGetResidualNorm(ksp.get(), &residual));
+  LinearReport report;
+  report.iterations = static_cast<int>(iterations);
+  report.converged = reason > 0;
+  report.relative_residual = norm > 0 ? residual / norm : 0;
+  return report;
+}
+
+/// Notes whether convergence has slowed down since the aggregates were made.
+void LinearSolver::Impl::judge(const LinearReport& report) {
+  if (report.iterations == 0) return;
+  const double rate = -std::log(report.relative_residual) / report.iterations;
+  if (!std::isfinite(rate)) return;
+  if (first_rate == 0) first_rate = rate;
+  if (!(rate >= settings.renewal_rate * first_rate)) slow = true;
+}
+
 LinearReport LinearSolver::solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance,
                                  int max_iterations) {
   Impl& s = *impl_;
@@ -285,21 +324,8 @@ LinearReport LinearSolver::solve(Vec ru, Vec rp, Vec du, Vec dp, double toleranc
     report.relative_residual = std::nan("");
     return report;
   }
-  s.create_ksp();
-  check(KSPGMRESSetRestart(s.ksp.get(), max_iterations));
-  check(KSPSetTolerances(s.ksp.get(), tolerance, 1e-300, 1e10, max_iterations));
-  const PetscErrorCode code = KSPSolve(s.ksp.get(), s.rhs.get(), s.solution.get());
-  if (s.failure) std::rethrow_exception(std::exchange(s.failure, nullptr));
-  check(code);
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
-  PetscInt iterations = 0;
-  PetscReal residual = 0;
-  check(KSPGetConvergedReason(s.ksp.get(), &reason));
-  check(KSPGetIterationNumber(s.ksp.get(), &iterations));
-  check(KSPGetResidualNorm(s.ksp.get(), &residual));
-  report.iterations = static_cast<int>(iterations);
-  report.converged = reason > 0;
-  report.relative_residual = norm > 0 ? residual / norm : 0;
+  report = s.run_ksp(norm, tolerance, max_iterations);
+  s.judge(report);
 
   const PetscScalar* values = nullptr;
   check(VecGetArrayRead(s.solution.get(), &values));
@@ -314,6 +340,8 @@ LinearReport LinearSolver::solve(Vec ru, Vec rp, Vec du, Vec dp, double toleranc
 void LinearSolver::drop_setup() {
   Impl& s = *impl_;
   s.multigrid.reset();
+  s.first_rate = 0;
+  s.slow = false;
   s.ksp.reset();
   for (MatHandle* m : {&s.A, &s.A_augmented, &s.B}) m->reset();
   for (VecHandle* v : {&s.C, &s.W, &s.schur, &s.coupling}) v->reset();

@@ -26,10 +26,14 @@ struct LinearSettings {
   enum class Form { augmented, original, original_transformed };
   Form form = Form::augmented;
   Multigrid::Settings multigrid;
+  /// Aggregates anew when a solve gains less than this share of the digits an iteration that the
+  /// first one gained on the present aggregates.
+  double renewal_rate = 0.75;
 };
 
 /// Collective. The structure of the multigrid hierarchy is kept from one set of blocks to the next,
-/// until `drop_setup`; after that the results are those of a new solver, bit for bit.
+/// until convergence slows down or until `drop_setup`; after that the results are those of a new
+/// solver, bit for bit.
 class LinearSolver {
  public:
   explicit LinearSolver(LinearLayout layout, const LinearSettings& settings = {});

@@ -13,8 +13,8 @@ namespace polyslip::solver {
 class Multigrid {
  public:
   struct Settings {
-    int sweeps_before = 2;
-    int sweeps_after = 2;
+    int sweeps_before = 0;
+    int sweeps_after = 4;
     Chebyshev::Settings smoother;
     CoarseSolver::Settings coarse;
   };
@@ -26,6 +26,8 @@ class Multigrid {
 
   /// A: BAIJ of block size 3; the structure is that of the first call.
   void set_matrix(Mat A);
+  /// Lets the next `set_matrix` aggregate anew instead of renewing numbers only.
+  void renew_hierarchy() { coarse_.reset(); }
   /// x = V-cycle applied to b.
   void apply(Vec b, Vec x);
 
