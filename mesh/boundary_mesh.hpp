@@ -43,6 +43,11 @@ class BoundaryMesher {
   /// is kept already or the geometry has none.
   bool copy(int face);
   bool is_copied(int face) const { return face_copied_[face]; }
+  /// Whether it lies in a domain face that is a plane.
+  bool is_flat(int face) const {
+    const int domain = geometry_.topology.faces[face].domain_face;
+    return domain >= 0 && planes_[domain];
+  }
   /// Meshes what is new or has to change and returns the faces whose mesh changed, sorted. A face
   /// that does not project is copied; RecoverableError if it cannot be.
   std::vector<int> update();

@@ -9,6 +9,7 @@
 #include "mesh/boundary_mesh.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/self_intersection.hpp"
+#include "mesh/volume_correction.hpp"
 
 namespace polyslip::mesh {
 
@@ -18,6 +19,7 @@ using core::Vec3;
 
 /// Rounds in which faces of grains that could not be meshed are copied (section 2.3.3).
 constexpr int copy_rounds = 4;
+constexpr int volume_corrections = 2;
 
 /// State of the rounds: boundary, and each grain's best mesh so far.
 class Pipeline {
@@ -49,6 +51,7 @@ class Pipeline {
     for (auto& r : results_) volumes.push_back(std::move(r.mesh));
     Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
     report_.straightened = mend_curved_elements(mesh);
+    if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);
     fill_report();
     tell(1.0);
     return mesh;
@@ -81,6 +84,19 @@ class Pipeline {
     for (auto& a : answers) {
       for (const auto& fault : a.faults) report_.faults.push_back(fault);
       results_[a.grain] = std::move(a);
+    }
+  }
+
+  /// New and old surfaces share nodes, not all points between them: what volume that costs is given
+  /// back by moving mid nodes.
+  void keep_volumes(Mesh& mesh) {
+    const auto wanted = grain_volumes(geometry_);
+    std::vector<char> fixed;
+    for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f)
+      fixed.push_back(boundary_.is_copied(f) || boundary_.is_flat(f));
+    for (int i = 0; i < volume_corrections; ++i) {
+      correct_volumes(mesh, wanted, fixed);
+      report_.straightened = std::max(report_.straightened, mend_curved_elements(mesh));
     }
   }
 

@@ -89,7 +89,7 @@ TEST(PolycrystalMesh, RemeshingKeepsGrainVolumesAndImprovesTheElements) {
     const auto after = grain_volumes(mesh);
     double worst = 0;
     for (int c = 0; c < 30; ++c) worst = std::max(worst, std::abs(after[c] / before[c] - 1));
-    EXPECT_LT(worst, 0.004);
+    EXPECT_LT(worst, 1e-5);
     EXPECT_GT(worst, 0);
     EXPECT_TRUE(report.copied_faces.empty());
     if (scale == Vec3(1, 1, 1)) {
