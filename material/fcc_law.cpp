@@ -62,7 +62,7 @@ struct SolvedBlock {
   Vec5v stress;  ///< s = g x, lattice frame [MPa]
 };
 
-/// dstress/dh, (M16) to (M18), entry 9 i + 3 k + l at tangent + lanes (9 i + 3 k + l).
+/// dstress/dh, (M.16) to (M.18), entry 9 i + 3 k + l at tangent + lanes (9 i + 3 k + l).
 void write_tangent(const SlipConstants& c, const SolvedBlock& block, m4 valid, double* tangent) {
   const SlipJacobian derivative = jacobian(c, block.problem, block.point);
   const Factors factors = factorise(derivative.rows);

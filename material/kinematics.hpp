@@ -1,6 +1,6 @@
 #pragma once
 // The strain increment and the rotation of a step, and their derivatives (docs/theory-material.md,
-// (M5), (M6), (M16)). Private to material.
+// (M.5), (M.6), (M.16)). Private to material.
 
 #include "material/vector_tensor.hpp"
 

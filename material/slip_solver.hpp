@@ -1,5 +1,5 @@
 #pragma once
-// The implicit equations of slip at a point (docs/theory-material.md, (M8) to (M11), (M15)):
+// The implicit equations of slip at a point (docs/theory-material.md, (M.8) to (M.11), (M.15)):
 // residual and Jacobian, and Newton's method with a monotone line search. Private to material.
 
 #include <array>
@@ -51,7 +51,7 @@ struct SlipJacobian {
   Vec5v rows[5];   ///< dresidual/dx
 };
 
-/// (M9), end-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma),
+/// (M.9), end-of-step g of Voce's law for a given Gamma: g = (g_n + k Gamma gs)/(1 + k Gamma),
 /// written so that rounding never lowers g.
 inline v4 voce_strength(const SlipConstants& c, v4 g_old, v4 total) {
   const v4 y = c.voce * total;
@@ -71,7 +71,7 @@ inline void resolve(const SlipConstants& c, const Vec5v& x, v4* ratio) {
   }
 }
 
-/// The residual at point.reduced: (M8) to (M11).
+/// The residual at point.reduced: (M.8) to (M.11).
 inline void evaluate(const SlipConstants& c, double n, const SlipProblem& problem,
                      SlipPoint& point) {
   v4 ratio[systems];
@@ -106,7 +106,7 @@ inline void evaluate(const SlipConstants& c, double n, const SlipProblem& proble
   point.norm = sqrt(dot(point.residual, point.residual));
 }
 
-/// The twin of evaluate, (M15): dDg_a = compliance_a P_a . dx, dw/dx = sum compliance_a q_a P_a,
+/// The twin of evaluate, (M.15): dDg_a = compliance_a P_a . dx, dw/dx = sum compliance_a q_a P_a,
 /// dg/dx = g' sum |.|'_a P_a,
 /// dresidual/dx = g C'^-1 + (C'^-1 x) (dg/dx) + sum compliance_a P_a P_a - M dw/dx.
 /// Symmetric positive definite but for terms of the order of the strain increments.
