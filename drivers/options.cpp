@@ -48,8 +48,26 @@ mesh::RegularisationOptions read_regularisation(Deck& deck) {
                                       .fallback = o.max_flatness_fault,
                                       .min = 0,
                                       .max = 90,
+                                      .exclusive_max = true,
                                       .help = "f_max: largest angle between the normals of the "
                                               "triangles that make a face."});
+  o.polyline_share = t.number(
+      "polyline_share",
+      {.fallback = o.polyline_share,
+       .min = 0,
+       .max = 1,
+       .help = "Edges shorter than this share of max_edge_length are removed even where two faces "
+               "of a grain then share a polyline of two edges. 0, with polyline_angle = 0: the "
+               "paper's regularisation, which never does so."});
+  o.polyline_angle = t.number(
+      "polyline_angle",
+      {.unit = "degrees",
+       .fallback = o.polyline_angle,
+       .min = 0,
+       .max = 90,
+       .exclusive_max = true,
+       .help = "So are edges shorter than max_edge_length opposite to a corner of a triangular "
+               "face that is sharper than this; 0: none."});
   return o;
 }
 

@@ -287,14 +287,14 @@ RegularisationReport regularise(Tessellation& tessellation, const Regularisation
     throw core::InputError(
         fmt::format("max_edge_length = {}: must be a length, 0 for none", options.max_edge_length));
   if (!(options.max_flatness_fault >= 0 && options.max_flatness_fault < 90))
-    throw core::InputError(fmt::format("max_flatness_fault = {}: must be 0 to 90 degrees",
+    throw core::InputError(fmt::format("max_flatness_fault = {}: must be 0 to below 90 degrees",
                                        options.max_flatness_fault));
   if (!(options.polyline_share >= 0 && options.polyline_share <= 1))
     throw core::InputError(
         fmt::format("polyline_share = {}: must be 0 to 1", options.polyline_share));
   if (!(options.polyline_angle >= 0 && options.polyline_angle < 90))
     throw core::InputError(
-        fmt::format("polyline_angle = {}: must be 0 to 90 degrees", options.polyline_angle));
+        fmt::format("polyline_angle = {}: must be 0 to below 90 degrees", options.polyline_angle));
   // Without any distortion nothing can be deleted, but for edges among triangles only: none.
   auto effective = options;
   if (options.max_flatness_fault == 0) effective.max_edge_length = 0;

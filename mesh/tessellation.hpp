@@ -72,8 +72,9 @@ core::Vec3 box_size(const PolycrystalOptions& options);
 Tessellation voronoi_tessellation(const PolycrystalOptions& options);
 
 /// Voronoi tessellation of given seeds, which lie inside the box [0, size] (InputError otherwise,
-/// or if two coincide). Where more than four cells meet, vertices within 1e-10 of the cell size are
-/// one; seeds that miss a grid by about 1e-11 are moved onto it.
+/// or if two coincide). Vertices within 1e-10 of the cell size are one; where that leaves cells
+/// that disagree (more than four that nearly meet in a point), within 1e-9, 1e-8 or 1e-7. Seeds
+/// that miss a grid by about 1e-11 are moved onto it.
 Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const core::Vec3& size);
 
 /// Removes short edges (section 2.1.2 of the paper). Every cell remains a polyhedron that is seen

@@ -260,7 +260,7 @@ std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds, const Vec3&
   const auto cells = separate_voronoi_cells(seeds, size);
   const double cell_size = std::cbrt(size.prod() / static_cast<double>(seeds.size()));
   Assembly assembly(cells, seeds, size);
-  for (double tolerance = 1e-10; tolerance < 1e-6; tolerance *= 10)
+  for (double tolerance : {1e-10, 1e-9, 1e-8, 1e-7})
     if (auto result = assembly.build(tolerance * cell_size)) return result;
   return std::nullopt;
 }

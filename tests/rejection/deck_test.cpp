@@ -54,6 +54,8 @@ const WrongDeck wrong_decks[] = {
      "or \"netgen\""},
     {"NoMesher", "[mesh]\nmeshers = []\n",
      "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
+    {"RightAngleOfAFace", "[regularisation]\nmax_flatness_fault = 90\n",
+     "deck.toml:2:22: [regularisation] max_flatness_fault = 90 must be >= 0 and < 90"},
     {"OrderThree", "[mesh]\norder = 3\n", "deck.toml:2:9: [mesh] order = 3 must be >= 1 and <= 2"},
     {"FinalStrainBelowARemeshingStrain",
      "[loading]\nfinal_strain = 0.2\n[remeshing]\nat_strains = [0.3]\n",

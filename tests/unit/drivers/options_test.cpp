@@ -121,6 +121,8 @@ domain = [1, 2, 3]
 [regularisation]
 max_edge_length = 0.26
 max_flatness_fault = 10
+polyline_share = 0
+polyline_angle = 5
 [mesh]
 element_size = 0.3
 progression_factor = 1.5
@@ -166,6 +168,8 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.polycrystal.domain, core::Vec3(1, 2, 3));
   EXPECT_EQ(o.regularisation.max_edge_length, 0.26);
   EXPECT_EQ(o.regularisation.max_flatness_fault, 10);
+  EXPECT_EQ(o.regularisation.polyline_share, 0);
+  EXPECT_EQ(o.regularisation.polyline_angle, 5);
   EXPECT_EQ(o.mesh.element_size, 0.3);
   EXPECT_EQ(o.mesh.progression_factor, 1.5);
   EXPECT_EQ(o.mesh.meshers, std::vector<std::string>{"netgen"});
