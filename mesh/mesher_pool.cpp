@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <list>
 #include <thread>
 #include <tuple>
@@ -106,6 +107,7 @@ struct MesherPool::Impl {
   void run(std::list<MesherTask>& tasks, std::size_t jobs);
   void wait(std::list<MesherTask*>& running);
   void take_reports(std::list<MesherTask*>& running);
+  void take_report(const protocol::ControlMessage& message, MesherTask& task);
 
   Spawner spawner;
   std::uint32_t tokens = 0;
@@ -115,12 +117,19 @@ struct MesherPool::Impl {
 void MesherPool::Impl::run(std::list<MesherTask>& tasks, std::size_t jobs) {
   std::list<MesherTask*> running;
   auto waiting = tasks.begin();
-  while (waiting != tasks.end() || !running.empty()) {
-    for (; waiting != tasks.end() && running.size() < jobs; ++waiting) running.push_back(&*waiting);
+  try {
+    while (waiting != tasks.end() || !running.empty()) {
+      for (; waiting != tasks.end() && running.size() < jobs; ++waiting)
+        running.push_back(&*waiting);
+      for (MesherTask* task : running)
+        if (!task->running()) task->start(spawner, ++tokens);
+      wait(running);
+      running.remove_if([](const MesherTask* task) { return task->finished(); });
+    }
+  } catch (const core::RecoverableError&) {
     for (MesherTask* task : running)
-      if (!task->running()) task->start(spawner, ++tokens);
-    wait(running);
-    running.remove_if([](const MesherTask* task) { return task->finished(); });
+      if (task->running()) spawner.kill_child(task->token());
+    throw;
   }
 }
 
@@ -142,12 +151,19 @@ void MesherPool::Impl::wait(std::list<MesherTask*>& running) {
 
 void MesherPool::Impl::take_reports(std::list<MesherTask*>& running) {
   while (const auto message = spawner.next_message()) {
-    if (message->kind != protocol::Control::ended) continue;
-    cpu_seconds += message->cpu_seconds;
+    if (message->kind == protocol::Control::ended) cpu_seconds += message->cpu_seconds;
     for (MesherTask* task : running)
-      if (task->running() && task->token() == message->token)
-        task->child_ended(spawner, message->value);
+      if (task->running() && task->token() == message->token) take_report(*message, *task);
   }
+}
+
+void MesherPool::Impl::take_report(const protocol::ControlMessage& message, MesherTask& task) {
+  if (message.kind == protocol::Control::ended) task.child_ended(spawner, message.value);
+  if (message.kind == protocol::Control::not_forked)
+    throw core::RecoverableError(
+        fmt::format("no process for a mesher after several tries: {}; free processes or memory, or "
+                    "raise the limits (ulimit -u, ulimit -v)",
+                    strerror(message.value)));
 }
 
 MesherPool::MesherPool(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

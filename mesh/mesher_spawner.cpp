@@ -201,9 +201,6 @@ std::optional<ControlMessage> Spawner::next_message() {
                     "installed next to polyslip",
                     executable_, strerror(message.value)));
   }
-  if (message.kind == Control::not_forked)
-    throw core::InternalError(
-        fmt::format("mesher pool: the mesher process cannot fork: {}", strerror(message.value)));
   return message;
 }
 

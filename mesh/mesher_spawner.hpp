@@ -43,8 +43,8 @@ class Spawner {
   /// Asks for a child that serves the socket whose other end is returned (non-blocking).
   Descriptor start_child(std::uint32_t token);
   void kill_child(std::uint32_t token);
-  /// A child's end if one was reported. Throws InternalError if the server is gone, InputError if
-  /// it could not be executed.
+  /// A child's end, or that it could not be forked, if one was reported. Throws InternalError if
+  /// the server is gone, InputError if it could not be executed.
   std::optional<protocol::ControlMessage> next_message();
   int control() const { return control_.get(); }
 

@@ -63,6 +63,7 @@ class MesherPool {
   /// into batches of a fixed size, each (batch, mesher) runs in a process of its own, and what is
   /// left of a batch after a fault goes on in a new one. A grain that no mesher could mesh has `ok`
   /// false. Throws InputError for an unknown mesher or if the worker program cannot be started,
+  /// RecoverableError if the machine has no process for a mesher after tries over three seconds,
   /// InternalError if the pool's own process is gone.
   std::vector<GrainResult> mesh(const std::vector<GrainRequest>& requests,
                                 const PoolOptions& options);

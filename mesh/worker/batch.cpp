@@ -3,9 +3,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <exception>
 #include <optional>
+#include <system_error>
 
 #include "mesh/mesher_protocol.hpp"
 #include "mesh/worker/fault_injection.hpp"
@@ -28,24 +31,28 @@ std::optional<protocol::Batch> receive_batch(int socket) {
   return protocol::decode_batch(payload);
 }
 
-void limit_process() {
-  rlimit limit{0, 0};
-  setrlimit(RLIMIT_CORE, &limit);
-  limit = {max_memory, max_memory};
-  setrlimit(RLIMIT_DATA, &limit);
+/// Sets a soft limit, or the hard one if that is lower. A mesher does not run without its limits.
+void limit_resource(decltype(RLIMIT_CORE) resource, rlim_t value, const char* name) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) == 0) {
+    limit.rlim_cur = std::min(value, limit.rlim_max);
+    if (setrlimit(resource, &limit) == 0) return;
+  }
+  throw std::system_error(errno, std::generic_category(), std::string("cannot limit its ") + name);
 }
 
-/// From now on, `seconds` of CPU for this process; a process that neither computes nor ends is
-/// killed by the clock, so late that a loaded machine does not come near it.
+/// No core files, 8 GB to write to and, from now on, `seconds` of CPU for this process; a process
+/// that neither computes nor ends is killed by the clock, so late that a loaded machine does not
+/// come near it.
 void limit_grain(double seconds) {
+  limit_resource(RLIMIT_CORE, 0, "core files");
+  limit_resource(RLIMIT_DATA, max_memory, "memory");
   rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
+  if (getrusage(RUSAGE_SELF, &usage) != 0)
+    throw std::system_error(errno, std::generic_category(), "cannot tell its CPU time");
   const double used = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                       1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-  rlimit limit{};
-  getrlimit(RLIMIT_CPU, &limit);
-  limit.rlim_cur = static_cast<rlim_t>(std::ceil(used + seconds));
-  setrlimit(RLIMIT_CPU, &limit);
+  limit_resource(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(used + seconds)), "CPU time");
   alarm(static_cast<unsigned>(60 + 20 * seconds));
 }
 
@@ -54,6 +61,7 @@ std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64
                        const FaultInjection& faults, int socket) {
   const GrainRequest& grain = batch.grains[index];
   try {
+    limit_grain(batch.timeout);
     faults.before(batch.mesher, grain.grain);
     VolumeMesh mesh = mesher.fill(grain.surface, batch.element_size);
     std::string fault = validate(grain.surface, mesh);
@@ -74,7 +82,6 @@ std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64
 
 void serve_batch(int socket) {
   try {
-    limit_process();
     const auto batch = receive_batch(socket);
     if (!batch) end(false);
     const auto mesher = make_mesher(batch->mesher);
@@ -82,7 +89,6 @@ void serve_batch(int socket) {
     const FaultInjection faults = FaultInjection::from_environment();
     for (std::uint64_t i = 0; i < batch->grains.size(); ++i) {
       if (!protocol::send_all(socket, protocol::encode_begin(i))) end(false);
-      limit_grain(batch->timeout);
       const std::string fault = mesh_grain(*mesher, *batch, i, faults, socket);
       if (!fault.empty()) {
         // The library may be locked or half-way: the next grain gets a process of its own.

@@ -34,6 +34,12 @@ bool FaultInjection::asked(const std::string& mesher, int grain, const std::stri
   return false;
 }
 
+int FaultInjection::refused_forks() const {
+  for (const auto& entry : entries_)
+    if (entry.mesher == "fork" && entry.kind == "refuse") return entry.grain;
+  return 0;
+}
+
 void FaultInjection::before(const std::string& mesher, int grain) const {
   if (asked(mesher, grain, "crash")) std::raise(SIGSEGV);
   if (asked(mesher, grain, "throw")) throw std::runtime_error("asked to throw");

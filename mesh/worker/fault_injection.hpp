@@ -12,9 +12,12 @@ namespace polyslip::mesh::worker {
 /// that mesher fail on that grain. Kinds: `crash` (segmentation fault), `hang` (an endless loop),
 /// `throw` (an exception), `nan` (a node that is not a number, unseen by the mesher process),
 /// `garbage` (an answer that is no message). An entry that cannot be read is ignored.
+/// "fork:N:refuse" makes the first N forks of the server fail.
 class FaultInjection {
  public:
   static FaultInjection from_environment();
+  /// Number of forks that fail.
+  int refused_forks() const;
   /// Before the mesher: crash, hang, throw.
   void before(const std::string& mesher, int grain) const;
   /// After the mesher's mesh was found valid: nan, garbage (written to the socket).

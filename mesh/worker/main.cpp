@@ -10,14 +10,18 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 
 #include "mesh/mesher_protocol.hpp"
 #include "mesh/worker/batch.hpp"
+#include "mesh/worker/fault_injection.hpp"
 #include "mesh/worker/mesher.hpp"
 
 namespace {
@@ -65,24 +69,6 @@ void say(Children& children, const ControlMessage& message) {
   worker::serve_batch(socket);
 }
 
-void start_child(Children& children, std::uint32_t token, int socket, int signals) {
-  Child* place = nullptr;
-  for (auto& child : children)
-    if (child.pid == 0) {
-      place = &child;
-      break;
-    }
-  const pid_t server = getpid();
-  const pid_t pid = place ? fork() : -1;
-  if (pid == 0) become_child(socket, signals, server);
-  const int error = place ? errno : EAGAIN;
-  close(socket);
-  if (pid < 0)
-    say(children, {Control::not_forked, token, error, 0, 0});
-  else
-    *place = {pid, token};
-}
-
 /// One message from the main program; the attached socket, or -1.
 bool receive(ControlMessage& message, int& socket) {
   iovec part{&message, sizeof message};
@@ -103,17 +89,6 @@ bool receive(ControlMessage& message, int& socket) {
   return true;
 }
 
-void obey(Children& children, int signals) {
-  ControlMessage message;
-  int socket = -1;
-  if (!receive(message, socket)) end(children);
-  if (message.kind == Control::start && socket >= 0)
-    start_child(children, message.token, socket, signals);
-  else if (message.kind == Control::kill)
-    for (auto& child : children)
-      if (child.pid > 0 && child.token == message.token) kill(child.pid, SIGKILL);
-}
-
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
@@ -130,6 +105,56 @@ void report_ended(Children& children, int signals) {
         say(children, {Control::ended, child.token, status, 0,
                        seconds(usage.ru_utime) + seconds(usage.ru_stime)});
       }
+}
+
+/// Forks; a machine short of processes or memory gets six tries over three seconds, between which
+/// ended children are reaped. -1 with errno if all fail.
+pid_t fork_patiently(Children& children, int signals, int& refused) {
+  constexpr int tries = 6;
+  constexpr long first_pause = 100'000'000;  // ns
+  for (int i = 0;; ++i) {
+    pid_t pid = -1;
+    errno = EAGAIN;
+    if (refused > 0)
+      --refused;
+    else
+      pid = fork();
+    if (pid >= 0 || (errno != EAGAIN && errno != ENOMEM) || i + 1 == tries) return pid;
+    const long pause = first_pause << i;
+    const timespec time{pause / 1'000'000'000, pause % 1'000'000'000};
+    nanosleep(&time, nullptr);
+    report_ended(children, signals);
+  }
+}
+
+void start_child(Children& children, std::uint32_t token, int socket, int signals, int& refused) {
+  const pid_t server = getpid();
+  pid_t pid = -1;
+  int error = EAGAIN;
+  const auto place = [&] {
+    return std::find_if(children.begin(), children.end(), [](auto& c) { return c.pid == 0; });
+  };
+  if (place() != children.end()) {
+    pid = fork_patiently(children, signals, refused);
+    error = errno;
+  }
+  if (pid == 0) become_child(socket, signals, server);
+  close(socket);
+  if (pid < 0)
+    say(children, {Control::not_forked, token, error, 0, 0});
+  else
+    *place() = {pid, token};
+}
+
+void obey(Children& children, int signals, int& refused) {
+  ControlMessage message;
+  int socket = -1;
+  if (!receive(message, socket)) end(children);
+  if (message.kind == Control::start && socket >= 0)
+    start_child(children, message.token, socket, signals, refused);
+  else if (message.kind == Control::kill)
+    for (auto& child : children)
+      if (child.pid > 0 && child.token == message.token) kill(child.pid, SIGKILL);
 }
 
 }  // namespace
@@ -152,10 +177,11 @@ int main(int argc, char**) {
   const int signals = signalfd(-1, &ended, SFD_CLOEXEC | SFD_NONBLOCK);
   if (signals < 0) return 1;
   static Children children;
+  int refused = worker::FaultInjection::from_environment().refused_forks();
   for (;;) {
     std::array<pollfd, 2> sources{{{control, POLLIN, 0}, {signals, POLLIN, 0}}};
     if (poll(sources.data(), sources.size(), -1) < 0 && errno != EINTR) end(children);
     if (sources[1].revents != 0) report_ended(children, signals);
-    if (sources[0].revents != 0) obey(children, signals);
+    if (sources[0].revents != 0) obey(children, signals, refused);
   }
 }

@@ -267,6 +267,27 @@ TEST(MesherPool, SaysThatItsProcessWasKilled) {
   EXPECT_THROW(pool->mesh(ellipsoids(2), PoolOptions{}), core::InternalError);
 }
 
+TEST(MesherPool, WaitsForAProcessWhenTheMachineHasNone) {
+  const auto pool = start_pool("fork:2:refuse");
+  EXPECT_TRUE(pool->mesh(ellipsoids(1), PoolOptions{})[0].ok);
+}
+
+TEST(MesherPool, SaysThatTheMachineHasNoProcessAndGoesOnLater) {
+  const auto pool = start_pool("fork:6:refuse");
+  PoolOptions options;
+  options.jobs = 1;
+  std::string text;
+  try {
+    pool->mesh(ellipsoids(1), options);
+  } catch (const core::RecoverableError& error) {
+    text = error.what();
+  }
+  EXPECT_NE(text.find("no process for a mesher after several tries: Resource temporarily"),
+            std::string::npos)
+      << text;
+  EXPECT_TRUE(pool->mesh(ellipsoids(1), options)[0].ok);
+}
+
 TEST(MesherPool, LeavesNoProcessBehindWhenItEnds) {
   {
     const auto pool = start_pool();
