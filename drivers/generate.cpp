@@ -32,6 +32,8 @@ void log_meshing(const mesh::Mesh& mesh, const mesh::MeshingReport& report,
   for (std::size_t i = 0; i < report.wins.size() && i < meshers.size(); ++i)
     wins += fmt::format("{}{} {}", i ? ", " : "", meshers[i], report.wins[i]);
   log.info("mesh: grains won by {}", wins);
+  const std::string repairs = mesh::repairs_text(report);
+  if (!repairs.empty()) log.info("mesh: {}", repairs);
 }
 
 }  // namespace

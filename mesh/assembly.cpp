@@ -1,5 +1,7 @@
 #include "mesh/assembly.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <unordered_map>
@@ -19,7 +21,9 @@ class MidNodes {
 
   void add(int a, int b, const Vec3& x) {
     if (mesh_.order == 1) return;
-    ids_.emplace(key(a, b), mesh_.node_count());
+    if (!ids_.emplace(key(a, b), mesh_.node_count()).second)
+      throw core::InternalError(fmt::format(
+          "mesh assembly: nodes {} and {} are joined by two edges of the surfaces", a + 1, b + 1));
     mesh_.nodes.push_back(x);
   }
   /// -1 in a mesh of order 1.

@@ -18,6 +18,8 @@ using core::Vec3;
 
 /// Share of its area that each part of an old face must keep in the projection.
 constexpr double least_projected_share = 0.05;
+/// How far beyond the old face, in its extent, a node may be that is put on its nearest point.
+constexpr double farthest_beyond = 0.02;
 /// A domain face is flat if its points differ by less than this, relative to the box.
 constexpr double flat = 1e-10;
 
@@ -184,11 +186,19 @@ std::vector<double> BoundaryMesher::node_sizes(const BoundaryNumbers& numbers) c
   return sizes;
 }
 
-bool BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
-                               const std::vector<double>& sizes, const BoundaryNumbers& numbers) {
+std::string BoundaryMesher::name(int face) const {
+  const auto& cells = geometry_.topology.faces[face].cells;
+  return fmt::format("face {} between grains {} and {} (0: outside)", face + 1, cells[0] + 1,
+                     cells[1] + 1);
+}
+
+std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
+                                      const std::vector<double>& sizes,
+                                      const BoundaryNumbers& numbers) {
   const auto& shape = geometry_.faces[face];
   const FaceProjection projection(shape, scale_);
-  if (geometry_.from_mesh && !projection.projects(least_projected_share)) return false;
+  if (geometry_.from_mesh && !projection.projects(least_projected_share))
+    return "its surface does not project on a plane";
   FaceMesh& result = faces_[face];
   result = {};
   PlanarProblem problem;
@@ -201,25 +211,36 @@ bool BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
     problem.sizes.push_back(sizes[n]);
   }
   PlanarMesh plane;
-  if (!mesh_polygon(problem, plane)) return false;
+  if (!mesh_polygon(problem, plane)) return plane.fault;
   const int domain = geometry_.topology.faces[face].domain_face;
   const auto in_plane = [&](Vec3 x) {
     if (domain >= 0) keep_in_planes(x, 1u << domain);
     return x;
   };
+  double beyond = 0, farthest = 0;
+  const auto count_beyond = [&] {
+    result.nearest_points += beyond > 0;
+    farthest = std::max(farthest, beyond);
+  };
   std::vector<Vec3> x;
   result.boundary_count = static_cast<int>(problem.boundary.size());
   for (int n : boundary_nodes) x.push_back(positions[n]);
   for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i) {
-    x.push_back(in_plane(projection.lift(plane.points[i])));
+    x.push_back(in_plane(projection.lift(plane.points[i], &beyond)));
+    count_beyond();
     result.inner_nodes.push_back(x.back());
   }
   result.triangles = plane.triangles;
   for (const auto& [a, b, t, i] : inner_edges(plane.triangles)) {
     const Eigen::Vector2d above = (plane.points[a] + plane.points[b]) / 2;
-    result.inner_edges.push_back({a, b, in_plane(projection.nearest((x[a] + x[b]) / 2, above))});
+    result.inner_edges.push_back(
+        {a, b, in_plane(projection.nearest((x[a] + x[b]) / 2, above, &beyond))});
+    count_beyond();
   }
-  return true;
+  if (!(farthest <= farthest_beyond * projection.extent()))
+    return fmt::format("a node of its mesh is {:.3g} beyond its old surface, of {:.3g} extent",
+                       farthest, projection.extent());
+  return {};
 }
 
 void BoundaryMesher::copy_face_mesh(int face) {
@@ -287,11 +308,9 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
       changed[f] = true;
       if (face_copied_[f]) {
         copy_face_mesh(f);
-      } else if (!mesh_face(f, x, sizes, numbers_now)) {
+      } else if (const auto fault = mesh_face(f, x, sizes, numbers_now); !fault.empty()) {
         if (!copy(f))
-          throw core::RecoverableError(fmt::format(
-              "face {} between grains {} and {} (0: outside) does not project on a plane", f + 1,
-              faces[f].cells[0] + 1, faces[f].cells[1] + 1));
+          throw core::RecoverableError(fmt::format("{} cannot be meshed: {}", name(f), fault));
         again = true;
       }
     }
@@ -334,9 +353,17 @@ bool BoundaryMesher::forbid_shared_edges() {
 
 std::vector<int> BoundaryMesher::update() {
   std::vector<char> changed(faces_.size(), false);
-  constexpr int rounds = 4;
+  constexpr int rounds = 16;  // each forbids more pairs of nodes, or copies a face
   mesh_faces(changed);
-  for (int i = 0; i < rounds && forbid_shared_edges(); ++i) mesh_faces(changed);
+  for (int i = 0; forbid_shared_edges(); ++i) {
+    if (i == rounds) {
+      const auto stale = std::find(face_stale_.begin(), face_stale_.end(), true);
+      throw core::RecoverableError(
+          fmt::format("{} shares inner edges with other faces after {} meshes",
+                      name(static_cast<int>(stale - face_stale_.begin())), rounds + 1));
+    }
+    mesh_faces(changed);
+  }
   std::vector<int> list;
   for (std::size_t f = 0; f < changed.size(); ++f)
     if (changed[f]) list.push_back(static_cast<int>(f));

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/types.hpp"
@@ -26,6 +27,7 @@ struct FaceMesh {
   std::vector<core::Vec3> inner_nodes;
   std::vector<std::array<int, 3>> triangles;  ///< normals as the face's
   std::vector<InnerEdge> inner_edges;         ///< sorted by (a, b)
+  int nearest_points = 0;  ///< nodes beyond the old face, put on its nearest point
 };
 
 /// Ids of the corner nodes: vertices, then inner nodes of edges by edge, then of faces by face.
@@ -49,7 +51,7 @@ class BoundaryMesher {
     return domain >= 0 && planes_[domain];
   }
   /// Meshes what is new or has to change and returns the faces whose mesh changed, sorted. A face
-  /// that does not project is copied; RecoverableError if it cannot be.
+  /// that cannot be meshed is copied; RecoverableError, naming it and why, if it cannot be.
   std::vector<int> update();
 
   const std::vector<core::Vec3>& vertices() const { return vertices_; }
@@ -69,8 +71,10 @@ class BoundaryMesher {
   void mesh_edge(int edge);
   void copy_edge(int edge);
   std::vector<double> node_sizes(const BoundaryNumbers& numbers) const;
-  bool mesh_face(int face, const std::vector<core::Vec3>& positions,
-                 const std::vector<double>& sizes, const BoundaryNumbers& numbers);
+  /// Why the face could not be meshed; empty if it was.
+  std::string mesh_face(int face, const std::vector<core::Vec3>& positions,
+                        const std::vector<double>& sizes, const BoundaryNumbers& numbers);
+  std::string name(int face) const;
   void copy_face_mesh(int face);
   void mesh_faces(std::vector<char>& changed);
   /// Inner edges that join the same two nodes as another inner edge or a 1D element are forbidden;

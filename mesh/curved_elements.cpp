@@ -1,9 +1,13 @@
 #include "mesh/curved_elements.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <vector>
 
+#include "core/error.hpp"
+#include "mesh/minimum.hpp"
 #include "mesh/quadrature.hpp"
 #include "mesh/shape_functions.hpp"
 
@@ -34,8 +38,9 @@ double least_ratio_of(const Mesh& mesh, const std::array<int, 10>& t,
   std::array<Vec3, 10> x;
   for (int i = 0; i < 10; ++i) x[i] = mesh.nodes[t[i]] - mesh.nodes[t[0]];
   const double straight = x[1].dot(x[2].cross(x[3]));
+  if (!(straight > 0)) return std::numeric_limits<double>::quiet_NaN();
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& g : gradients) least = std::min(least, tet10_jacobian(x, g).determinant());
+  for (const auto& g : gradients) least = min_or_nan(least, tet10_jacobian(x, g).determinant());
   return least / straight;
 }
 
@@ -101,7 +106,7 @@ class Mender {
   double worst_around(int mid) const {
     double worst = std::numeric_limits<double>::infinity();
     for (int e : rings_[mid])
-      worst = std::min(worst, least_ratio_of(mesh_, mesh_.tetrahedra[e], gradients_));
+      worst = min_or_nan(worst, least_ratio_of(mesh_, mesh_.tetrahedra[e], gradients_));
     return worst;
   }
 
@@ -140,7 +145,8 @@ class Mender {
     watched_.erase(std::unique(watched_.begin(), watched_.end()), watched_.end());
   }
 
-  /// Pulls the curved mid node of an element that helps it most; all of them if none does.
+  /// Pulls the curved mid node of an element that helps it most; all of them if none does. Each is
+  /// pulled a bounded number of times; an element that is straight and still unfit ends it.
   void pull_in_best(int element) {
     const auto& t = mesh_.tetrahedra[element];
     double best_ratio = least_ratio_of(mesh_, t, gradients_);
@@ -154,6 +160,11 @@ class Mender {
       if (ratio > best_ratio) best_ratio = ratio, best = t[i];
     }
     if (best >= 0) return pull_in(best);
+    if (std::none_of(t.begin() + 4, t.end(), [&](int n) { return mids_[n].curved; }))
+      throw core::RecoverableError(
+          fmt::format("element {} of grain {} has no positive volume even with straight edges "
+                      "(ratio of Jacobians {})",
+                      element + 1, mesh_.tetrahedron_cell[element] + 1, best_ratio));
     for (int i = 4; i < 10; ++i)
       if (mids_[t[i]].curved) pull_in(t[i]);
   }

@@ -56,13 +56,18 @@ struct MeshingReport {
   std::vector<std::string> faults;  ///< one line for each candidate that crashed or was invalid
   std::vector<int> wins;            ///< [meshers] grains won by each
   int straightened = 0;             ///< mid nodes pulled towards their chord to keep det J > 0
+  int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                ///< mean over grains of eq. (5)
 };
 
+/// What had to be given up of the surfaces, in one line: mid nodes pulled in, nodes put on a
+/// nearest point, faces copied. Empty if nothing.
+std::string repairs_text(const MeshingReport& report);
+
 /// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes and projections are taken in the
 /// frame scaled by `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none.
-/// Same input, same mesh, for any number of workers. Throws RecoverableError if a grain cannot be
-/// meshed, naming it.
+/// Same input, same mesh, for any number of workers. Throws RecoverableError if a face or a grain
+/// cannot be meshed, naming it; InternalError if the first mesh does not fill the box to 1e-12.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    MesherPool& pool, MeshingReport& report,
                    const std::function<void(double fraction)>& progress = {});

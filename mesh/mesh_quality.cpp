@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mesh/mesh.hpp"
+#include "mesh/minimum.hpp"
 #include "mesh/quadrature.hpp"
 #include "mesh/shape_functions.hpp"
 
@@ -73,7 +74,7 @@ QualitySummary quality(const Mesh& mesh) {
   for (const auto& t : mesh.tetrahedra) {
     const double rho =
         radius_ratio(mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]], mesh.nodes[t[3]]);
-    summary.min_radius_ratio = std::min(summary.min_radius_ratio, rho);
+    summary.min_radius_ratio = min_or_nan(summary.min_radius_ratio, rho);
     summary.mean_radius_ratio += rho / mesh.element_count();
   }
   return summary;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "mesh/assembly.hpp"
@@ -20,6 +21,17 @@ using core::Vec3;
 /// Rounds in which faces of grains that could not be meshed are copied (section 2.3.3).
 constexpr int copy_rounds = 4;
 constexpr int volume_corrections = 2;
+
+/// The grains of an undeformed polycrystal fill its box, but for rounding.
+void check_box(const Mesh& mesh) {
+  constexpr double rounding = 1e-12;
+  double sum = 0;
+  for (double v : grain_volumes(mesh)) sum += v;
+  const double box = mesh.size.prod();
+  if (!(std::abs(sum - box) <= rounding * box))
+    throw core::InternalError(fmt::format(
+        "meshing: the grains' volumes add up to {:.17g}, the box has {:.17g}", sum, box));
+}
 
 /// State of the rounds: boundary, and each grain's best mesh so far.
 class Pipeline {
@@ -53,6 +65,7 @@ class Pipeline {
     report_.straightened = mend_curved_elements(mesh);
     if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);
     fill_report();
+    if (!geometry_.from_mesh) check_box(mesh);
     tell(1.0);
     return mesh;
   }
@@ -146,8 +159,10 @@ class Pipeline {
         report_.wins[i] += r.mesher == options_.meshers[i];
     }
     report_.copied_faces.clear();
-    for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f)
+    for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f) {
       if (boundary_.is_copied(f)) report_.copied_faces.push_back(f);
+      report_.nearest_points += boundary_.faces()[f].nearest_points;
+    }
   }
 
   const Geometry& geometry_;
@@ -160,6 +175,15 @@ class Pipeline {
 };
 
 }  // namespace
+
+std::string repairs_text(const MeshingReport& report) {
+  if (report.straightened == 0 && report.nearest_points == 0 && report.copied_faces.empty())
+    return {};
+  return fmt::format(
+      "{} mid nodes pulled towards their chord, {} nodes put on the nearest point of their old "
+      "face, {} faces copied",
+      report.straightened, report.nearest_points, report.copied_faces.size());
+}
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,

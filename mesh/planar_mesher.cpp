@@ -219,6 +219,14 @@ class Refiner {
   std::vector<char> stuck_;    ///< [triangles] no point can be added
 };
 
+bool has_edge(const PlanarTriangulation& triangulation, int a, int b) {
+  const auto holds = [](const auto& t, int v) {
+    return std::find(t.v.begin(), t.v.end(), v) != t.v.end();
+  };
+  return std::any_of(triangulation.triangles().begin(), triangulation.triangles().end(),
+                     [&](const auto& t) { return holds(t, a) && holds(t, b); });
+}
+
 }  // namespace
 
 double radius_ratio(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
@@ -230,23 +238,34 @@ double radius_ratio(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 }
 
 bool mesh_polygon(const PlanarProblem& problem, PlanarMesh& mesh) {
+  const auto fail = [&](const char* why) {
+    mesh = {};
+    mesh.fault = why;
+    return false;
+  };
   mesh = {};
-  if (problem.boundary.size() < 3) return false;
+  if (problem.boundary.size() < 3) return fail("its boundary has less than three nodes");
   for (const auto& x : problem.boundary)
-    if (!x.allFinite()) return false;
+    if (!x.allFinite()) return fail("a node of its boundary is not finite");
   const Grid grid(problem.boundary);
   std::vector<GridPoint> polygon;
   for (const auto& x : problem.boundary) polygon.push_back(grid.of(x));
-  if (!is_simple(polygon)) return false;
+  if (!is_simple(polygon)) return fail("its projected boundary meets itself or turns right");
   Refiner refiner(problem, grid, polygon);
   refiner.run();
   auto& triangulation = refiner.mesh();
   for (const auto& [a, b] : problem.forbidden_edges)
-    if (!triangulation.split_edge(a, b)) triangulation.split_edge(b, a);
+    if (!triangulation.split_edge(a, b) && !triangulation.split_edge(b, a) &&
+        has_edge(triangulation, a, b))
+      return fail("an inner edge between nodes of its boundary is too flat to be cut");
   mesh.points = problem.boundary;
   for (std::size_t i = problem.boundary.size(); i < triangulation.points().size(); ++i)
     mesh.points.push_back(grid.origin + units(triangulation.points()[i]) / grid.scale);
-  for (const auto& t : triangulation.triangles()) mesh.triangles.push_back(t.v);
+  for (const auto& t : triangulation.triangles()) {
+    mesh.triangles.push_back(t.v);
+    if (!(radius_ratio(mesh.points[t.v[0]], mesh.points[t.v[1]], mesh.points[t.v[2]]) > 0))
+      return fail("a triangle of its mesh has no positive area");
+  }
   return true;
 }
 

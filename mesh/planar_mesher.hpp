@@ -20,6 +20,7 @@ struct PlanarProblem {
 struct PlanarMesh {
   std::vector<Eigen::Vector2d> points;        ///< the boundary's, then inner ones
   std::vector<std::array<int, 3>> triangles;  ///< turning left, positive areas
+  std::string fault;                          ///< why there are none
 };
 
 /// 2 r_in / R_circ of a triangle; 1 for an equilateral one, negative if it turns right.
@@ -27,7 +28,8 @@ double radius_ratio(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Ei
 
 /// Delaunay triangulation, frontal point insertion (Rebay, J. Comput. Phys. 106, 1993) to the
 /// sizes, smoothing. Predicates are exact, on a grid of 2^-27 of the polygon's extent. Returns
-/// whether the polygon is simple; if not, `mesh` is empty.
+/// whether there is a mesh; if not, it holds the fault: the polygon is not simple, an edge that is
+/// forbidden could not be cut, or a triangle that is positive on the grid is not so off it.
 bool mesh_polygon(const PlanarProblem& problem, PlanarMesh& mesh);
 
 }  // namespace polyslip::mesh

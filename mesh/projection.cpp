@@ -114,7 +114,14 @@ double FaceProjection::invert(int triangle, const Vector2d& p, Vector2d& xi) con
   return none;
 }
 
-Vec3 FaceProjection::lift(const Vector2d& p) const {
+double FaceProjection::extent() const {
+  Vector2d low = projected_.front(), high = low;
+  for (const auto& p : projected_) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return (high - low).maxCoeff();
+}
+
+Vec3 FaceProjection::lift(const Vector2d& p, double* beyond) const {
+  if (beyond) *beyond = 0;
   const int count = static_cast<int>(shape_->triangles.size());
   int best = -1;
   Vector2d best_xi = Vector2d::Zero();
@@ -138,23 +145,24 @@ Vec3 FaceProjection::lift(const Vector2d& p) const {
     const double d = (project(x) - p).norm();
     if (d < distance) distance = d, nearest = x;
   }
-  if (std::isfinite(distance)) return nearest;
   // No triangle can be inverted: the nearest node.
-  for (std::size_t i = 0; i < projected_.size(); ++i)
-    if ((projected_[i] - p).norm() < distance) {
-      distance = (projected_[i] - p).norm();
-      nearest = shape_->points[i];
-    }
+  if (!std::isfinite(distance))
+    for (std::size_t i = 0; i < projected_.size(); ++i)
+      if ((projected_[i] - p).norm() < distance) {
+        distance = (projected_[i] - p).norm();
+        nearest = shape_->points[i];
+      }
+  if (beyond) *beyond = distance;
   return nearest;
 }
 
 // Gauss-Newton steps with the tangents of the surface by differences; a step that leads away ends
 // it.
-Vec3 FaceProjection::nearest(const Vec3& target, const Vector2d& start) const {
+Vec3 FaceProjection::nearest(const Vec3& target, const Vector2d& start, double* beyond) const {
   constexpr int steps = 4;
   constexpr double difference = 1e-4;  // of the distance
   Vector2d p = start;
-  Vec3 x = lift(p);
+  Vec3 x = lift(p, beyond);
   const double first = (x - target).norm();
   if (!(first > 0)) return x;
   const double h = difference * first * scale_.maxCoeff();
@@ -164,10 +172,12 @@ Vec3 FaceProjection::nearest(const Vec3& target, const Vector2d& start) const {
     const Eigen::Matrix2d metric = tangents.transpose() * tangents;
     if (!(std::abs(metric.determinant()) > 1e-12 * metric.squaredNorm())) break;
     const Vector2d step = metric.inverse() * (tangents.transpose() * (target - x));
-    const Vec3 next = lift(p + step);
+    double next_beyond = 0;
+    const Vec3 next = lift(p + step, &next_beyond);
     if (!((next - target).norm() < (1 - 1e-6) * (x - target).norm())) break;
     p += step;
     x = next;
+    if (beyond) *beyond = next_beyond;
   }
   return x;
 }

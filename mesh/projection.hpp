@@ -23,10 +23,16 @@ class FaceProjection {
   /// Largest angle between the normal of a triangle's quarter and the mean normal, radians.
   double distortion() const;
   Eigen::Vector2d project(const core::Vec3& position) const;
-  /// The point of the quadratic surface above p; just outside of it the nearest triangle goes on.
-  core::Vec3 lift(const Eigen::Vector2d& p) const;
-  /// The point of the surface nearest to `target` (unscaled distance), sought from above `start`.
-  core::Vec3 nearest(const core::Vec3& target, const Eigen::Vector2d& start) const;
+  /// Largest extent of the projected face along the axes of its plane.
+  double extent() const;
+  /// The point of the quadratic surface above p; just outside of it the nearest triangle goes on,
+  /// further out it is the nearest point of the surface or its nearest node. `beyond`, if given, is
+  /// then set to how far p is from its projection, else to zero.
+  core::Vec3 lift(const Eigen::Vector2d& p, double* beyond = nullptr) const;
+  /// The point of the surface nearest to `target` (unscaled distance), sought from above `start`;
+  /// `beyond` as above, of the point found.
+  core::Vec3 nearest(const core::Vec3& target, const Eigen::Vector2d& start,
+                     double* beyond = nullptr) const;
 
  private:
   struct Box {

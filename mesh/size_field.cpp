@@ -1,7 +1,11 @@
 #include "mesh/size_field.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "core/error.hpp"
 
 namespace polyslip::mesh {
 
@@ -66,10 +70,12 @@ class Grading {
   double rise_count_ = 0, flat_count_ = 0, fall_count_ = 0;
 };
 
+/// Whether adjacent elements differ by no more than p, but for the rounding of s.
 bool progresses(const std::vector<double>& s, double p) {
+  const double rounding = 1e-14 * s.back();
   for (std::size_t i = 2; i < s.size(); ++i) {
     const double a = s[i - 1] - s[i - 2], b = s[i] - s[i - 1];
-    if (std::max(a, b) > p * std::min(a, b) * (1 + 1e-9)) return false;
+    if (std::max(a, b) > p * std::min(a, b) * (1 + 1e-9) + p * rounding) return false;
   }
   return true;
 }
@@ -128,21 +134,28 @@ std::vector<double> vertex_sizes(const Topology& topology, const std::vector<dou
 }
 
 // The count of elements is the one whose lengths are nearest to those asked for, in the ratio, then
-// as many more as the progression factor needs.
+// one more if the progression factor needs it: with n >= N elements each spans N/n <= 1 of the
+// count N of the grading, whose size h changes by no more than p^(N/n) from one to the next as |h'|
+// <= ln p; so the second try always does.
 std::vector<double> edge_nodes(double length, double from, double to, double element_size,
                                double progression_factor) {
   const Grading grading(length, from, to, element_size, progression_factor);
   const double count = grading.count();
+  if (!(length > 0 && from > 0 && to > 0 && count < 1e8))
+    throw core::RecoverableError(fmt::format(
+        "1D meshing: edge of length {} with sizes {} and {}, c_l = {}, p_l = {}: {} elements",
+        length, from, to, element_size, progression_factor, count));
   int n = std::max(1, static_cast<int>(count));
   if (count * count > static_cast<double>(n) * (n + 1)) ++n;
-  std::vector<double> s;
-  do {
-    s.assign(n + 1, 0.0);
+  for (; n < count + 2; ++n) {
+    std::vector<double> s(n + 1, 0.0);
     for (int i = 1; i < n; ++i) s[i] = grading.at(count * i / n);
     s[n] = length;
-    ++n;
-  } while (!progresses(s, progression_factor) && n <= count + 3);
-  return s;
+    if (progresses(s, progression_factor)) return s;
+  }
+  throw core::InternalError(
+      fmt::format("1D meshing: p_l = {} does not hold on an edge of length {} with sizes {} and {}",
+                  progression_factor, length, from, to));
 }
 
 }  // namespace polyslip::mesh

@@ -34,7 +34,8 @@ std::vector<double> vertex_sizes(const Topology& topology, const std::vector<dou
                                  double element_size, double progression_factor);
 
 /// Arc lengths 0 ... length of the nodes of an edge whose vertices have the sizes `from` and `to`:
-/// elements grow by p_l from the vertices up to c_l; adjacent ones differ by no more than p_l.
+/// elements grow by p_l from the vertices up to c_l; adjacent ones differ by no more than p_l (to
+/// 1e-9). Throws RecoverableError for lengths or sizes that are not positive.
 std::vector<double> edge_nodes(double length, double from, double to, double element_size,
                                double progression_factor);
 

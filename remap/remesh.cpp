@@ -29,6 +29,8 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
   for (const std::string& fault : report.meshing.faults) log(fault);
   for (int face : report.meshing.copied_faces)
     log(fmt::format("face {}: not remeshed, its old mesh is kept", face + 1));
+  const std::string repairs = mesh::repairs_text(report.meshing);
+  if (!repairs.empty()) log(fmt::format("remeshing at strain {:.6g}: {}", old.strain, repairs));
   mesh::check(mesh);
   mesh::Snapshot result = transport(old, std::move(mesh));
   audit(old, result, options, report);

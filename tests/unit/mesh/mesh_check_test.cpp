@@ -112,6 +112,10 @@ TEST(MeshQuality, SummaryHoldsTheWorstAndTheMean) {
   const double r0 = radius_ratio(x[0], x[1], x[2], x[3]), r1 = radius_ratio(x[0], x[2], x[1], x[4]);
   EXPECT_EQ(quality(m).min_radius_ratio, std::min(r0, r1));
   EXPECT_NEAR(quality(m).mean_radius_ratio, (r0 + r1) / 2, 1e-15);
+  Mesh broken = m;
+  broken.nodes[3][0] = std::nan("");  // of the first tetrahedron only
+  EXPECT_TRUE(std::isnan(quality(broken).min_radius_ratio));
+  EXPECT_TRUE(std::isnan(quality(broken).mean_radius_ratio));
 }
 
 TEST(MshFile, HoldsEveryNodeBitForBitAndTheElementsInOrder) {

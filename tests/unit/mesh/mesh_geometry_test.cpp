@@ -11,6 +11,7 @@
 #include "mesh/boundary_mesh.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/pipeline.hpp"
+#include "mesh/projection.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/volume_correction.hpp"
 
@@ -239,11 +240,17 @@ TEST(BoundaryMesher, CopiesAFaceThatDoesNotProjectAndItsEdges) {
   }
   EXPECT_TRUE(mesher.update().empty());
   g.from_mesh = false;
-  std::swap(shape.triangles[0][1], shape.triangles[0][2]);
-  for (auto& e : faces[folded].edges)
-    for (auto& x : g.edges[e].points) x = middle;
+  auto& chain = g.edges[faces[folded].edges[0]].points;  // crosses the opposite side
+  for (std::size_t i = 1; i + 1 < chain.size(); ++i) chain[i] += 4 * (middle - chain[i]);
   BoundaryMesher strict(g, options, Vec3::Ones());
-  EXPECT_THROW(strict.update(), core::RecoverableError) << "there is no old mesh to keep";
+  try {
+    strict.update();
+    FAIL() << "there is no old mesh to keep";
+  } catch (const core::RecoverableError& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(text.find("face "), 0u) << text;
+    EXPECT_NE(text.find("its projected boundary meets itself"), std::string::npos) << text;
+  }
 }
 
 TEST(MeshGeometry, CopiesEveryFaceOfAGrainThatFailsOtherwise) {
@@ -292,6 +299,55 @@ TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
   }
 }
 
+TEST(MeshGeometry, RefusesAFirstMeshThatDoesNotFillTheBox) {
+  Geometry g = cubes(2);
+  g.size[0] *= 1 + 1e-11;
+  MeshingReport report;
+  EXPECT_THROW(star_mesh(g, options_of(0.5), report), core::InternalError);
+}
+
+/// A unit square in two triangles that lacks a corner of the given size.
+FaceShape cut_square(double cut) {
+  FaceShape shape;
+  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const int n = static_cast<int>(shape.points.size());
+    for (const Vec3& x : {a, b, c, Vec3((a + b) / 2), Vec3((b + c) / 2), Vec3((c + a) / 2)})
+      shape.points.push_back(x);
+    shape.triangles.push_back({n, n + 1, n + 2, n + 3, n + 4, n + 5});
+  };
+  add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  add({1, 0, 0}, {1, 1 - cut, 0}, {0, 1, 0});
+  return shape;
+}
+
+TEST(FaceProjection, TellsHowFarBeyondTheFaceAPointIs) {
+  const FaceShape shape = cut_square(0.5);
+  const FaceProjection projection(shape, Vec3::Ones());
+  EXPECT_NEAR(projection.extent(), 1, 1e-14);
+  double beyond = -1;
+  EXPECT_LT(
+      (projection.lift(projection.project({0.3, 0.3, 0}), &beyond) - Vec3(0.3, 0.3, 0)).norm(),
+      1e-12);
+  EXPECT_EQ(beyond, 0);
+  EXPECT_LT((projection.lift(projection.project({1, 0.55, 0}), &beyond) - Vec3(1, 0.55, 0)).norm(),
+            1e-12)
+      << "just outside the surface goes on";
+  EXPECT_EQ(beyond, 0);
+  const Vec3 far(3, 2, 0), x = projection.lift(projection.project(far), &beyond);
+  EXPECT_LT((x - Vec3(1, 0.5, 0)).norm(), 1e-9);
+  EXPECT_NEAR(beyond, (far - x).norm(), 1e-12);
+}
+
+TEST(MeshGeometry, TellsWhatWasGivenUp) {
+  MeshingReport report;
+  EXPECT_EQ(repairs_text(report), "");
+  report.nearest_points = 2;
+  report.copied_faces = {4};
+  EXPECT_EQ(repairs_text(report),
+            "0 mid nodes pulled towards their chord, 2 nodes put on the nearest point of their old "
+            "face, 1 faces copied");
+}
+
 TEST(CurvedElements, AreMendedInsideFirstAndThenAtTheSurface) {
   MeshingReport report;
   const Mesh flat = star_mesh(cubes(1), options_of(0.5), report);
@@ -330,6 +386,21 @@ TEST(CurvedElements, AreMendedInsideFirstAndThenAtTheSurface) {
       EXPECT_EQ(moved, 0) << "inner mid nodes are enough";
     }
   }
+  Mesh broken = flat;  // an element without volume whose curved edges do not help it
+  const auto& t = broken.tetrahedra[3];
+  broken.nodes[t[3]] = broken.nodes[t[0]];
+  broken.nodes[t[4]] += Vec3(0.01, 0, 0);
+  try {
+    mend_curved_elements(broken);
+    FAIL() << "nothing was thrown";
+  } catch (const core::RecoverableError& error) {
+    EXPECT_NE(std::string(error.what()).find("of grain 1 has no positive volume"),
+              std::string::npos)
+        << error.what();
+  }
+  broken = flat;
+  broken.nodes[broken.tetrahedra[3][4]][1] = std::nan("");
+  EXPECT_TRUE(std::isnan(least_jacobian_ratio(broken, 3)));
   Mesh linear = flat;
   linear.order = 1;
   EXPECT_EQ(mend_curved_elements(linear), 0);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/error.hpp"
 #include "core/random.hpp"
 
 namespace polyslip::mesh {
@@ -45,6 +46,13 @@ TEST(EdgeNodes, KeepTheProgressionFactorWhateverTheSizes) {
       EXPECT_LE(std::max(l, before) / std::min(l, before), p * (1 + 1e-8)) << i;
     }
   }
+  for (double tiny : {1e-5, 1e-8, 1e-10}) {  // lengths that rounding of the nodes shows in
+    EXPECT_GE(edge_nodes(1.0, tiny, 0.25, 0.25, 1.5).size(), 3u);
+    EXPECT_GE(edge_nodes(1.0, tiny, 0.25, 0.25, 100).size(), 3u);
+  }
+  EXPECT_THROW(edge_nodes(0.0, 0.1, 0.1, 0.25, 2), core::RecoverableError);
+  EXPECT_THROW(edge_nodes(1.0, 0.0, 0.1, 0.25, 2), core::RecoverableError);
+  EXPECT_THROW(edge_nodes(std::nan(""), 0.1, 0.1, 0.25, 2), core::RecoverableError);
   EXPECT_EQ(edge_nodes(1.0, 0.25, 0.1, 0.25, 1.0).size(), 11u) << "factor 1: the smallest size";
 }
 
