@@ -104,6 +104,7 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
   for (std::size_t e = 0; e < local_.elements.size(); ++e) {
     if (mixed_) {
       mean_stress_[e].fill(p[e]);
+      add_point_volumes(e);
       volume_gap_[e] = std::log(volumes_[e] / reference_volumes_[e]) - p[e] / bulk_;
       continue;
     }
@@ -116,6 +117,18 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
   for (double g : volume_gap_) total += std::abs(g);
   const int bad = std::isfinite(total) ? 0 : 1;
   return maximum(local_.comm, bad) != 0 ? Evaluation::not_finite : Evaluation::fine;
+}
+
+PointVolumeSpring Discretisation::spring(std::size_t e, const ElementGeometry& geometry) const {
+  return point_volume_spring(geometry, &volume_ratio_[element_points * e], reference_volumes_[e],
+                             point_volume_share * shear_);
+}
+
+void Discretisation::add_point_volumes(std::size_t e) {
+  ElementGeometry geometry;
+  element_geometry(positions(static_cast<int>(e), x_), geometry);
+  const auto p = spring_mean_stress(spring(e, geometry), geometry);
+  for (std::size_t q = 0; q < element_points; ++q) mean_stress_[e][q] += p[q];
 }
 
 Evaluation Discretisation::kinematics(const Configuration& old) {
@@ -132,7 +145,6 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
     }
     volumes_[e] = geometry.volume;
     jacobian_ratios_[e] = geometry.min_jacobian_ratio;
-    if (mixed_) continue;
     for (std::size_t q = 0; q < element_points; ++q) {
       const auto F = [&](int i, int j) { return f[(3 * i + j) * element_points + q]; };
       const double det = F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) -
@@ -189,6 +201,7 @@ void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>
   const double* tangent = &tangent_[e * 54 * element_points];
   element_tangent(geometry, &stress_[e * 6 * element_points], tangent, mean_stress_[e],
                   mixed_ ? 0 : bulk_, matrix);
+  if (mixed_) add_spring_tangent(spring(e, geometry), geometry, matrix);
   element_volume_gradient(geometry, b);
   modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
 

@@ -10,6 +10,7 @@
 #include "solver/element.hpp"
 #include "solver/linear_blocks.hpp"
 #include "solver/partition.hpp"
+#include "solver/point_volumes.hpp"
 
 namespace polyslip::solver {
 
@@ -17,7 +18,7 @@ namespace polyslip::solver {
 struct Configuration {
   std::vector<double> x;             ///< [local_nodes][3] positions
   std::vector<double> p;             ///< [elements] mean stress [MPa], mixed element
-  std::vector<double> volume_ratio;  ///< [elements][4] det F of the point, displacement element
+  std::vector<double> volume_ratio;  ///< [elements][4] det F of the point since V0
   std::vector<double> state;         ///< [elements][law size][4] of the material
 };
 
@@ -89,6 +90,9 @@ class Discretisation {
   std::vector<ElementForces> element_forces_;
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
+  PointVolumeSpring spring(std::size_t element, const ElementGeometry& geometry) const;
+  /// Adds the spring's mean stresses to those of the element's points.
+  void add_point_volumes(std::size_t element);
   Evaluation kinematics(const Configuration& old);
   Evaluation update_material(const Configuration& old, double time_step);
   void sum_forces();

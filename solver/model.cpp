@@ -306,9 +306,9 @@ struct Model::Impl {
         "predictor: the same in the step before", nodes(predictor.previous_rate()));
     add(out, field::pressure_rate, Location::element, 1, "MPa", Transport::not_carried,
         "predictor: mean stress per unit strain", elements(predictor.pressure_rate(), 1));
-    if (!mixed)
-      add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
-          "volume over volume at zero pressure", elements(now.volume_ratio, element_points));
+    add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
+        "volume of the point over its volume at zero pressure",
+        elements(now.volume_ratio, element_points));
     return out;
   }
 

@@ -1,0 +1,116 @@
+#include "solver/point_volumes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/random.hpp"
+#include "mesh/mesh.hpp"
+
+namespace polyslip::solver {
+namespace {
+
+ElementPositions reference_positions() {
+  ElementPositions x{{{0, 0, 0}, {1.1, 0.1, 0}, {0.1, 0.9, 0.1}, {0, 0.1, 1}}};
+  for (int e = 0; e < 6; ++e)
+    for (int i = 0; i < 3; ++i) {
+      const auto [a, b] = mesh::tetrahedron_edges[e];
+      x[4 + e][i] = (x[a][i] + x[b][i]) / 2;
+    }
+  return x;
+}
+
+ElementPositions moved(ElementPositions x, double amount) {
+  core::Random random(3, core::Stream::tests);
+  for (auto& node : x)
+    for (double& c : node) c += amount * random.uniform(-1, 1);
+  return x;
+}
+
+/// The spring and its forces at positions x, for a body whose points had their volumes at x0.
+struct Response {
+  PointVolumeSpring spring;
+  std::array<double, element_points> p{};
+  ElementGeometry geometry;
+  ElementForces forces{};
+};
+
+Response response(const ElementPositions& x0, const ElementPositions& x, double kappa) {
+  ElementGeometry before;
+  Response r;
+  EXPECT_TRUE(element_geometry(x0, before));
+  EXPECT_TRUE(element_geometry(x, r.geometry));
+  std::array<double, element_points> ratio{};
+  for (int q = 0; q < element_points; ++q) ratio[q] = r.geometry.weights[q] / before.weights[q];
+  r.spring = point_volume_spring(r.geometry, ratio.data(), before.volume, kappa);
+  r.p = spring_mean_stress(r.spring, r.geometry);
+  const std::array<double, 6 * element_points> no_stress{};
+  element_forces(r.geometry, no_stress.data(), r.p, r.forces);
+  return r;
+}
+
+double energy(const PointVolumeSpring& spring) {
+  double u = 0;
+  for (int q = 0; q < element_points; ++q)
+    u += spring.kappa / 2 * spring.reference[q] * spring.s[q] * spring.s[q];
+  return u;
+}
+
+TEST(PointVolumes, AreFreeOfStressWhereAllPointsGrowAlike) {
+  const ElementPositions x0 = reference_positions();
+  ElementPositions x = x0;
+  for (auto& node : x)
+    for (double& c : node) c *= 1.1;
+  for (double p : response(x0, x, 500).p) EXPECT_NEAR(p, 0, 1e-11);
+}
+
+TEST(PointVolumes, AddNoMeanStressToTheElement) {
+  const Response r = response(reference_positions(), moved(reference_positions(), 0.05), 500);
+  double mean = 0, size = 0;
+  for (int q = 0; q < element_points; ++q) {
+    mean += r.geometry.weights[q] * r.p[q];
+    size += std::abs(r.p[q]);
+  }
+  EXPECT_NEAR(mean, 0, 1e-12);
+  EXPECT_GT(size, 10);
+}
+
+TEST(PointVolumes, ForcesAreTheDerivativeOfTheEnergy) {
+  const ElementPositions x0 = reference_positions(), x = moved(x0, 0.05);
+  const Response r = response(x0, x, 500);
+  constexpr double step = 1e-6;
+  for (int a = 0; a < element_nodes; ++a)
+    for (int i = 0; i < 3; ++i) {
+      ElementPositions plus = x, minus = x;
+      plus[a][i] += step;
+      minus[a][i] -= step;
+      const double slope =
+          (energy(response(x0, plus, 500).spring) - energy(response(x0, minus, 500).spring)) /
+          (2 * step);
+      EXPECT_NEAR(r.forces[a][i], slope, 1e-6);
+    }
+}
+
+TEST(PointVolumes, TangentIsTheDerivativeOfTheForces) {
+  const ElementPositions x0 = reference_positions(), x = moved(x0, 0.05);
+  const Response r = response(x0, x, 500);
+  ElementMatrix matrix;
+  const std::array<double, 6 * element_points> no_stress{};
+  const std::array<double, 54 * element_points> no_tangent{};
+  element_tangent(r.geometry, no_stress.data(), no_tangent.data(), r.p, 0, matrix);
+  add_spring_tangent(r.spring, r.geometry, matrix);
+  constexpr double step = 1e-6;
+  for (int b = 0; b < element_nodes; ++b)
+    for (int k = 0; k < 3; ++k) {
+      ElementPositions plus = x, minus = x;
+      plus[b][k] += step;
+      minus[b][k] -= step;
+      const Response up = response(x0, plus, 500), down = response(x0, minus, 500);
+      for (int a = 0; a < element_nodes; ++a)
+        for (int i = 0; i < 3; ++i)
+          EXPECT_NEAR(matrix[a][i][b][k], (up.forces[a][i] - down.forces[a][i]) / (2 * step), 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace polyslip::solver
