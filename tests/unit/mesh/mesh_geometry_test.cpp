@@ -253,6 +253,26 @@ TEST(BoundaryMesher, CopiesAFaceThatDoesNotProjectAndItsEdges) {
   }
 }
 
+TEST(BoundaryMesher, CopiesAFaceOfWhichHalfIsMissing) {
+  MeshingReport report;
+  Geometry g = geometry_of(star_mesh(cubes(1), options_of(0.2), report));
+  auto& shape = g.faces[0];
+  Vec3 middle = Vec3::Zero();
+  for (const auto& x : shape.points) middle += x / static_cast<double>(shape.points.size());
+  const Vec3 across = (shape.points[shape.triangles[0][0]] - middle).normalized();
+  for (double kept :
+       {1.0, 0.5, 0.0}) {  // of the distance to its far side, in which nothing is left
+    std::erase_if(shape.triangles, [&](const std::array<int, 6>& t) {
+      const Vec3 x = (shape.points[t[0]] + shape.points[t[1]] + shape.points[t[2]]) / 3;
+      return kept < 1 && (x - middle).dot(across) > kept * 0.5;
+    });
+    BoundaryMesher mesher(g, options_of(0.2), Vec3::Ones());
+    mesher.update();
+    EXPECT_EQ(mesher.is_copied(0), kept < 1) << kept;
+    EXPECT_EQ(mesher.faces()[0].nearest_points, 0) << "of a copied face none counts";
+  }
+}
+
 TEST(MeshGeometry, CopiesEveryFaceOfAGrainThatFailsOtherwise) {
   MeshingReport report;
   const Mesh old = star_mesh(cubes(2), options_of(0.34), report);
