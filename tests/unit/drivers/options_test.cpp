@@ -149,6 +149,7 @@ min_strain_increment = 1e-6
 fixed_increment = true
 [remeshing]
 at_strains = [0.2, 0.4]
+orthotropic_share = 0.5
 max_grain_volume_change = 0.01
 [solver]
 newton_tolerance = 1e-9
@@ -191,6 +192,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.loading.min_strain_increment, 1e-6);
   EXPECT_TRUE(o.loading.fixed_increment);
   EXPECT_EQ(o.remeshing.at_strains, (std::vector<double>{0.2, 0.4}));
+  EXPECT_EQ(o.remeshing.orthotropic_share, 0.5);
   EXPECT_EQ(o.remeshing.max_grain_volume_change, 0.01);
   EXPECT_EQ(o.solver.newton_tolerance, 1e-9);
   EXPECT_EQ(o.solver.max_newton_iterations, 30);
