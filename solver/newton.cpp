@@ -109,14 +109,19 @@ Balance NewtonSolver::measure(const std::vector<double>& x) const {
                  discretisation_.volumes(), discretisation_.volume_gap());
 }
 
-bool NewtonSolver::converged(const Balance& b, const NewtonProblem& problem) const {
+bool NewtonSolver::balanced(const Balance& b) const {
   const double t = options_.newton_tolerance;
   const double force = std::max(b.largest_face_force, floor_force_);
   bool fine = b.free_norm <= t * std::max(b.reaction_norm, floor_force_);
   for (std::size_t i = 0; i < 3; ++i)
     fine = fine && std::abs(b.resultant[i]) <= t * force &&
            std::abs(b.moment[i]) <= t * force * length_;
-  return fine && b.volume_gap <= t * std::abs(problem.strain_increment);
+  return fine;
+}
+
+bool NewtonSolver::converged(const Balance& b, const NewtonProblem& problem) const {
+  return balanced(b) &&
+         b.volume_gap <= options_.newton_tolerance * std::abs(problem.strain_increment);
 }
 
 bool NewtonSolver::solve_linear(NewtonReport& report) {
@@ -193,7 +198,8 @@ bool NewtonSolver::search(const NewtonProblem& problem, Balance before, std::vec
       continue;
     }
     const double work = conjugate_residual();
-    if (report.balance.free_norm <= accepted_norm * before.free_norm ||
+    // Of balanced forces the work is round-off: what is left to do then is in the volumes.
+    if (balanced(report.balance) || report.balance.free_norm <= accepted_norm * before.free_norm ||
         std::abs(work) <= accepted_work * std::abs(work0))
       return true;
     if (std::abs(work) < best_work) {

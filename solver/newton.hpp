@@ -66,6 +66,8 @@ class NewtonSolver {
 
   void update_residual(const NewtonProblem& problem);
   Balance measure(const std::vector<double>& x) const;
+  /// The criteria on forces alone.
+  bool balanced(const Balance& balance) const;
   bool converged(const Balance& balance, const NewtonProblem& problem) const;
   bool solve_linear(NewtonReport& report);
   double conjugate_residual() const;
