@@ -194,7 +194,7 @@ void Discretisation::sum_forces() {
 
 void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
                                     ElementMatrix& matrix, ElementForces& b,
-                                    double& modulus) const {
+                                    ElementScales& scales) const {
   const auto e = static_cast<std::size_t>(element);
   ElementGeometry geometry;
   element_geometry(positions(element, x_), geometry);
@@ -203,7 +203,13 @@ void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>
                   mixed_ ? 0 : bulk_, matrix);
   if (mixed_) add_spring_tangent(spring(e, geometry), geometry, matrix);
   element_volume_gradient(geometry, b);
-  modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
+  const double modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
+  scales.modulus = modulus;
+  const double W = mixed_ ? augmentation(modulus) / geometry.volume : 0;
+  double squares = 0;
+  for (const auto& node : b)
+    for (double component : node) squares += component * component;
+  scales.pressure = W * std::sqrt(squares);
 
   std::array<double, 30> keep{};
   for (int a = 0; a < element_nodes; ++a)
@@ -212,12 +218,10 @@ void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>
       keep[3 * a + i] = constrained[dof] ? 0 : 1;
       b[a][i] *= keep[3 * a + i];
     }
-  const double weight = mixed_ ? augmentation(modulus) / geometry.volume : 0;
   const double* flat_b = &b[0][0];
   for (int row = 0; row < 30; ++row) {
     double* A = &matrix[0][0][0][0] + 30 * row;
-    for (int c = 0; c < 30; ++c)
-      A[c] = A[c] * keep[row] * keep[c] + weight * flat_b[row] * flat_b[c];
+    for (int c = 0; c < 30; ++c) A[c] = A[c] * keep[row] * keep[c] + W * flat_b[row] * flat_b[c];
   }
 }
 
@@ -229,16 +233,19 @@ LinearBlocks Discretisation::assemble(const std::vector<std::uint8_t>& constrain
   const int n = local_.element_count();
   std::vector<ElementMatrix> matrices(chunk);
   std::vector<ElementForces> b(chunk);
-  std::vector<double> modulus(static_cast<std::size_t>(n));
+  scales_.resize(static_cast<std::size_t>(n));
   std::fill(values_.begin(), values_.end(), 0.0);
   for (int begin = 0; begin < n; begin += chunk) {
     const int count = std::min(chunk, n - begin);
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < count; ++i)
-      compute_matrix(begin + i, constrained, matrices[i], b[i], modulus[begin + i]);
+      compute_matrix(begin + i, constrained, matrices[i], b[i], scales_[begin + i]);
     for (int i = 0; i < count; ++i) {
       pattern_.add(begin + i, matrices[i], values_);
-      if (mixed_) gradient_pattern_.set(begin + i, b[i], gradient_values_);
+      if (!mixed_) continue;
+      for (auto& node : b[i])
+        for (double& component : node) component *= scales_[begin + i].pressure;
+      gradient_pattern_.set(begin + i, b[i], gradient_values_);
     }
   }
   LinearBlocks blocks;
@@ -255,9 +262,12 @@ LinearBlocks Discretisation::assemble(const std::vector<std::uint8_t>& constrain
   check(VecGetArrayWrite(W_.get(), &W));
   check(VecGetArrayWrite(schur_.get(), &S));
   for (int e = 0; e < n; ++e) {
-    C[e] = volumes_[e] / bulk_;
-    W[e] = augmentation(modulus[e]) / volumes_[e];
-    S[e] = C[e] + (1 - W[e] * C[e]) / (modulus[e] / volumes_[e] + W[e]);
+    const double V = volumes_[e], mu = scales_[e].modulus;
+    const double d2 = scales_[e].pressure * scales_[e].pressure;
+    const double compliance = V / bulk_, w = augmentation(mu) / V;
+    C[e] = d2 * compliance;
+    W[e] = w / d2;
+    S[e] = d2 * (compliance + (1 - w * compliance) / (mu / V + w));
   }
   check(VecRestoreArrayWrite(C_.get(), &C));
   check(VecRestoreArrayWrite(W_.get(), &W));

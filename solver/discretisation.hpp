@@ -44,8 +44,13 @@ class Discretisation {
                       const std::vector<double>& p, double time_step);
 
   /// Tangent blocks at the last evaluation, Dirichlet dofs (constrained: [local_nodes][3])
-  /// eliminated. Valid until the next call. Collective.
+  /// eliminated. Rows and columns of the mean stresses are scaled by `pressure_scale`: [A B^T; B
+  /// -C] becomes [A B^T D; D B -D C D]. Valid until the next call. Collective.
   LinearBlocks assemble(const std::vector<std::uint8_t>& constrained);
+
+  /// D of an element: W |b|, which makes a volume residual the force that the augmentation makes of
+  /// it, so that a linear solver's norm sees both.
+  double pressure_scale(std::size_t element) const { return scales_[element].pressure; }
 
   /// Takes the last evaluation's state as `configuration`'s.
   void accept(const std::vector<double>& x, const std::vector<double>& p,
@@ -73,6 +78,9 @@ class Discretisation {
   const material::CrystalLaw& law() const { return law_; }
 
  private:
+  struct ElementScales {
+    double modulus = 0, pressure = 0;
+  };
   const LocalMesh& local_;
   const NodeExchange& exchange_;
   const material::CrystalLaw& law_;
@@ -88,6 +96,7 @@ class Discretisation {
   std::vector<std::array<double, element_points>> mean_stress_;  // [elements] of the points
   std::vector<material::PointStatus> status_;
   std::vector<ElementForces> element_forces_;
+  std::vector<ElementScales> scales_;
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
   PointVolumeSpring spring(std::size_t element, const ElementGeometry& geometry) const;
@@ -98,9 +107,9 @@ class Discretisation {
   void sum_forces();
   /// W V of an element [MPa]: no more than K, where W = 1/C condenses the pressure exactly.
   double augmentation(double modulus) const;
-  /// A_e + W b b^T and b, constrained dofs at zero; the shear modulus of element_shear_modulus.
+  /// A_e + W b b^T and b, constrained dofs at zero; the element's scales.
   void compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
-                      ElementMatrix& matrix, ElementForces& b, double& modulus) const;
+                      ElementMatrix& matrix, ElementForces& b, ElementScales& scales) const;
 };
 
 }  // namespace polyslip::solver

@@ -134,7 +134,8 @@ bool NewtonSolver::solve_linear(NewtonReport& report) {
   if (discretisation_.mixed()) {
     check(VecGetArrayWrite(rp_.get(), &array));
     for (std::size_t e = 0; e < local.elements.size(); ++e)
-      array[e] = -discretisation_.volumes()[e] * discretisation_.volume_gap()[e];
+      array[e] = -discretisation_.pressure_scale(e) * discretisation_.volumes()[e] *
+                 discretisation_.volume_gap()[e];
     check(VecRestoreArrayWrite(rp_.get(), &array));
   }
   const LinearReport linear =
@@ -149,7 +150,11 @@ bool NewtonSolver::solve_linear(NewtonReport& report) {
   }
   from_petsc(du_.get(), dofs, increment_);
   discretisation_.exchange().update_ghosts(increment_, 3);
-  if (discretisation_.mixed()) from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
+  if (discretisation_.mixed()) {
+    from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
+    for (std::size_t e = 0; e < local.elements.size(); ++e)
+      pressure_increment_[e] *= discretisation_.pressure_scale(e);
+  }
   return true;
 }
 
