@@ -53,6 +53,7 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
   volume_gap_.assign(n, 0);
   jacobian_ratios_.assign(n, 0);
   volume_ratio_.assign(n * element_points, 1);
+  step_ratio_.assign(n * element_points, 1);
   f_.assign(n * 9 * element_points, 0);
   state_.assign(n * law.layout().size() * element_points, 0);
   stress_.assign(n * 6 * element_points, 0);
@@ -95,8 +96,9 @@ ElementPositions Discretisation::positions(int element, const std::vector<double
 }
 
 Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<double>& x,
-                                    const std::vector<double>& p, double time_step) {
+                                    const std::vector<double>& p, double time_step, double kappa) {
   x_ = x;
+  kappa_ = kappa;
   Evaluation outcome = kinematics(old);
   if (outcome == Evaluation::fine) outcome = update_material(old, time_step);
   outcome = static_cast<Evaluation>(maximum(local_.comm, static_cast<int>(outcome)));
@@ -120,8 +122,7 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
 }
 
 PointVolumeSpring Discretisation::spring(std::size_t e, const ElementGeometry& geometry) const {
-  return point_volume_spring(geometry, &volume_ratio_[element_points * e], reference_volumes_[e],
-                             point_volume_share * shear_);
+  return point_volume_spring(geometry, &step_ratio_[element_points * e], kappa_);
 }
 
 void Discretisation::add_point_volumes(std::size_t e) {
@@ -151,6 +152,7 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
                          F(0, 1) * (F(1, 0) * F(2, 2) - F(1, 2) * F(2, 0)) +
                          F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
       const std::size_t at = static_cast<std::size_t>(e) * element_points + q;
+      step_ratio_[at] = det;
       volume_ratio_[at] = old.volume_ratio[at] * det;
     }
   }

@@ -38,10 +38,10 @@ class Discretisation {
                  std::vector<double> reference_volume);
 
   /// Stresses, new state, forces and volume residuals at positions x and mean stresses p, reached
-  /// from `old` in `time_step` [s]. Same answer on every rank. Unless `fine`, the results below are
-  /// unusable. Collective.
+  /// from `old` in `time_step` [s]; kappa: modulus of solver/point_volumes.hpp [MPa], mixed
+  /// element. Same answer on every rank. Unless `fine`, the results below are unusable. Collective.
   Evaluation evaluate(const Configuration& old, const std::vector<double>& x,
-                      const std::vector<double>& p, double time_step);
+                      const std::vector<double>& p, double time_step, double kappa);
 
   /// Tangent blocks at the last evaluation, Dirichlet dofs (constrained: [local_nodes][3])
   /// eliminated. Rows and columns of the mean stresses are scaled by `pressure_scale`: [A B^T; B
@@ -92,6 +92,8 @@ class Discretisation {
   VecHandle C_, W_, schur_;
   std::vector<double> values_, gradient_values_;
   std::vector<double> reference_volumes_, volumes_, volume_gap_, jacobian_ratios_, volume_ratio_;
+  std::vector<double> step_ratio_;  // [elements][4] det f of the point over the step
+  double kappa_ = 0;
   std::vector<double> x_, f_, state_, stress_, tangent_, forces_;
   std::vector<std::array<double, element_points>> mean_stress_;  // [elements] of the points
   std::vector<material::PointStatus> status_;

@@ -211,6 +211,23 @@ struct Model::Impl {
     control.accepted(increment);
   }
 
+  /// Of the body's mean stress after the last step; 0 without one. Collective.
+  double von_mises_stress() const {
+    std::array<double, 7> sums{};
+    for (std::size_t e = 0; e < volumes.size(); ++e) {
+      for (std::size_t c = 0; c < 6; ++c) sums[c] += volumes[e] * element_stress[6 * e + c];
+      sums[6] += volumes[e];
+    }
+    sum(comm, sums.data(), 7);
+    if (!(sums[6] > 0)) return 0;
+    for (std::size_t c = 0; c < 6; ++c) sums[c] /= sums[6];
+    const double mean = (sums[0] + sums[1] + sums[2]) / 3;
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      square += 1.5 * (sums[c] - mean) * (sums[c] - mean) + 3 * sums[3 + c] * sums[3 + c];
+    return std::sqrt(square);
+  }
+
   StepRecord record(double increment, const StepRecord& counters) const {
     StepRecord r = counters;
     r.strain = strain;
@@ -238,7 +255,8 @@ struct Model::Impl {
       const double increment = end - strain;
       std::vector<double> x, p;
       predict(end, x, p);
-      const NewtonProblem problem{now, increment / loading.strain_rate, increment, {}};
+      const double kappa = point_volume_modulus(von_mises_stress(), increment, law.shear_modulus());
+      const NewtonProblem problem{now, increment / loading.strain_rate, increment, kappa, {}};
       const NewtonReport report = newton->solve(problem, x, p);
       counters.newton_iterations += report.iterations;
       counters.linear_iterations += report.linear_iterations;
@@ -306,9 +324,10 @@ struct Model::Impl {
         "predictor: the same in the step before", nodes(predictor.previous_rate()));
     add(out, field::pressure_rate, Location::element, 1, "MPa", Transport::not_carried,
         "predictor: mean stress per unit strain", elements(predictor.pressure_rate(), 1));
-    add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
-        "volume of the point over its volume at zero pressure",
-        elements(now.volume_ratio, element_points));
+    if (!mixed)
+      add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
+          "volume of the point over its volume at zero pressure",
+          elements(now.volume_ratio, element_points));
     return out;
   }
 

@@ -74,7 +74,8 @@ void NewtonSolver::drop_setup(const std::vector<double>& x) {
 NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<double>& x,
                                  std::vector<double>& p) {
   NewtonReport report;
-  const Evaluation start = discretisation_.evaluate(problem.old, x, p, problem.time_step);
+  const Evaluation start =
+      discretisation_.evaluate(problem.old, x, p, problem.time_step, problem.kappa);
   if (start != Evaluation::fine) {
     report.reason = "predictor: " + describe(start);
     return report;
@@ -173,7 +174,8 @@ bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] = constrained_[i] ? x0[i] : x0[i] + lambda * increment_[i];
   for (std::size_t e = 0; e < p.size(); ++e) p[e] = p0[e] + lambda * pressure_increment_[e];
-  const Evaluation outcome = discretisation_.evaluate(problem.old, x, p, problem.time_step);
+  const Evaluation outcome =
+      discretisation_.evaluate(problem.old, x, p, problem.time_step, problem.kappa);
   if (outcome != Evaluation::fine) {
     report.reason = describe(outcome);
     return false;

@@ -19,6 +19,7 @@ struct NewtonProblem {
   const Configuration& old;     ///< last converged one
   double time_step = 0;         ///< s
   double strain_increment = 0;  ///< scale of the volume criterion
+  double kappa = 0;             ///< MPa, solver/point_volumes.hpp
   /// [local_nodes][3] forces of the surroundings on free dofs; empty: none
   std::vector<double> external_forces;
 };

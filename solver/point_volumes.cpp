@@ -1,5 +1,6 @@
 #include "solver/point_volumes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace polyslip::solver {
@@ -18,13 +19,23 @@ Gradient divergence(const ElementGeometry& geometry, int q) {
 
 }  // namespace
 
+double point_volume_modulus(double von_mises_stress, double strain_increment,
+                            double shear_modulus) {
+  return std::min(point_volume_share * von_mises_stress / (3 * std::abs(strain_increment)),
+                  point_volume_limit * shear_modulus);
+}
+
 PointVolumeSpring point_volume_spring(const ElementGeometry& geometry, const double* volume_ratio,
-                                      double reference_volume, double kappa) {
+                                      double kappa) {
   PointVolumeSpring spring;
   spring.kappa = kappa;
-  const double whole = std::log(geometry.volume / reference_volume);
+  double start = 0;  // V_n
   for (int q = 0; q < element_points; ++q) {
     spring.reference[q] = geometry.weights[q] / volume_ratio[q];
+    start += spring.reference[q];
+  }
+  const double whole = std::log(geometry.volume / start);
+  for (int q = 0; q < element_points; ++q) {
     spring.s[q] = std::log(volume_ratio[q]) - whole;
     spring.sum += spring.reference[q] * spring.s[q];
   }

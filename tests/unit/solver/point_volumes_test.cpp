@@ -42,7 +42,7 @@ Response response(const ElementPositions& x0, const ElementPositions& x, double 
   EXPECT_TRUE(element_geometry(x, r.geometry));
   std::array<double, element_points> ratio{};
   for (int q = 0; q < element_points; ++q) ratio[q] = r.geometry.weights[q] / before.weights[q];
-  r.spring = point_volume_spring(r.geometry, ratio.data(), before.volume, kappa);
+  r.spring = point_volume_spring(r.geometry, ratio.data(), kappa);
   r.p = spring_mean_stress(r.spring, r.geometry);
   const std::array<double, 6 * element_points> no_stress{};
   element_forces(r.geometry, no_stress.data(), r.p, r.forces);
@@ -62,6 +62,13 @@ TEST(PointVolumes, AreFreeOfStressWhereAllPointsGrowAlike) {
   for (auto& node : x)
     for (double& c : node) c *= 1.1;
   for (double p : response(x0, x, 500).p) EXPECT_NEAR(p, 0, 1e-11);
+}
+
+TEST(PointVolumes, ModulusIsAViscosityOverTheStepWithALimit) {
+  EXPECT_NEAR(point_volume_modulus(27, 0.02, 27e3), 4 * 27 / 0.06, 1e-9);
+  EXPECT_NEAR(point_volume_modulus(27, 0.04, 27e3), 4 * 27 / 0.12, 1e-9);
+  EXPECT_NEAR(point_volume_modulus(27, 1e-4, 27e3), 0.2 * 27e3, 1e-9);
+  EXPECT_EQ(point_volume_modulus(0, 1e-4, 27e3), 0);
 }
 
 TEST(PointVolumes, AddNoMeanStressToTheElement) {
