@@ -83,7 +83,8 @@ struct Problem {
   }
 };
 
-Errors solve(double element_size, double bulk, bool mixed) {
+/// kappa: modulus of the points' volumes (solver/point_volumes.hpp).
+Errors solve(double element_size, double bulk, bool mixed, double kappa = 0) {
   const Problem problem(element_size);
   const LocalMesh& local = problem.distribution.local();
   const Solution exact{bulk};
@@ -98,7 +99,7 @@ Errors solve(double element_size, double bulk, bool mixed) {
   old.p.assign(local.elements.size(), 0);
   old.volume_ratio.assign(local.elements.size() * 4, 1);
   old.state.assign(local.elements.size() * 24, 0);
-  NewtonProblem step{old, 1.0, amplitude, std::vector<double>(old.x.size(), 0)};
+  NewtonProblem step{old, 1.0, amplitude, kappa, std::vector<double>(old.x.size(), 0)};
   problem.for_each_point([&](int e, const auto& shape, const Vec3& x, double weight) {
     const Vec3 b = exact.body_force(x);
     for (int a = 0; a < 10; ++a)
@@ -156,6 +157,17 @@ TEST(ManufacturedSolution, MixedElementKeepsItsOrdersAndConstantsWhenNearlyIncom
   }
   EXPECT_NEAR(stiff_fine.displacement / soft_fine.displacement, 1, 0.1);
   EXPECT_NEAR(stiff_fine.pressure / soft_fine.pressure, 1, 0.1);
+}
+
+TEST(ManufacturedSolution, PointsVolumesCostTheMixedElementNoOrder) {
+  const double kappa = point_volume_share * mu;  // as in a step: the share of the shear modulus
+  const Errors coarse = solve(coarse_size, 1e5, true, kappa),
+               fine = solve(coarse_size / 2, 1e5, true, kappa),
+               plain = solve(coarse_size / 2, 1e5, true);
+  EXPECT_GT(order(coarse, fine, &Errors::displacement), 1.85);
+  EXPECT_GT(order(coarse, fine, &Errors::pressure), 0.9);
+  EXPECT_LT(fine.displacement, 1.2 * plain.displacement);
+  EXPECT_LT(fine.pressure, 1.2 * plain.pressure);
 }
 
 TEST(ManufacturedSolution, DisplacementElementIsOfThirdOrderWhenCompressible) {
