@@ -1,8 +1,11 @@
 #include "solver/element.hpp"
 
+#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/tensor.hpp"
 #include "mesh/quadrature.hpp"
 #include "mesh/shape_functions.hpp"
 
@@ -74,6 +77,28 @@ void moduli(const double* stress, const double* tangent, double p, double bulk, 
           if (i == j && k == l) m += bulk;
           M[i][j][k][l] = m;
         }
+}
+
+/// The five deviatoric modes, orthonormal: as Mandel vectors and as 3 x 3 tensors (entry 3 k + l).
+struct DeviatorBasis {
+  Eigen::Matrix<double, 6, 5> mandel;
+  Eigen::Matrix<double, 9, 5> plain;
+};
+
+DeviatorBasis make_deviator_basis() {
+  DeviatorBasis basis;
+  for (int mode = 0; mode < 5; ++mode) {
+    const core::Mat3 tensor = core::from_deviator5(core::Vec5::Unit(mode));
+    basis.mandel.col(mode) = core::mandel(tensor);
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l) basis.plain(3 * k + l, mode) = tensor(k, l);
+  }
+  return basis;
+}
+
+const DeviatorBasis& deviator_basis() {
+  static const DeviatorBasis basis = make_deviator_basis();
+  return basis;
 }
 
 }  // namespace
@@ -171,18 +196,15 @@ void element_tangent(const ElementGeometry& geometry, const double* stress, cons
 }
 
 double element_shear_modulus(const ElementGeometry& geometry, const double* tangent) {
+  const DeviatorBasis& basis = deviator_basis();
   double mu = 0;
   for (int q = 0; q < element_points; ++q) {
-    const auto D = [&](int i, int j, int k, int l) {
-      return tangent[(9 * mandel[i][j] + 3 * k + l) * element_points + q] * plain(i, j);
-    };
-    double trace = 0, volumetric = 0;  // over symmetric modes; of the mode 1/sqrt 3
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        trace += 0.5 * (D(i, j, i, j) + D(i, j, j, i));
-        volumetric += D(i, i, j, j) / 3;
-      }
-    mu += geometry.weights[q] / geometry.volume * (trace - volumetric) / 10;
+    Eigen::Matrix<double, 6, 9> D;
+    for (int i = 0; i < 6; ++i)
+      for (int kl = 0; kl < 9; ++kl) D(i, kl) = tangent[(9 * i + kl) * element_points + q];
+    const Eigen::Matrix<double, 5, 5> modes = basis.mandel.transpose() * D * basis.plain;
+    mu += geometry.weights[q] / geometry.volume *
+          std::pow(std::max(modes.determinant(), 0.0), 0.2) / 2;
   }
   return mu;
 }

@@ -55,8 +55,8 @@ void element_tangent(const ElementGeometry& geometry, const double* stress, cons
                      const std::array<double, element_points>& mean_stress, double bulk,
                      ElementMatrix& matrix);
 
-/// Volume mean over the points of the tangent's shear modulus: (1/10) of the trace of D over the
-/// five deviatoric modes [MPa].
+/// Volume mean over the points of half the geometric mean of the tangent's eigenvalues on the five
+/// deviatoric modes, det^(1/5)/2 [MPa]; 2 mu times the identity gives mu.
 double element_shear_modulus(const ElementGeometry& geometry, const double* tangent);
 
 }  // namespace polyslip::solver
