@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "rejection/program.hpp"
+#include "support/program.hpp"
 
 namespace polyslip::tests {
 namespace {

@@ -1,0 +1,161 @@
+// kill -9 at any moment, then `polyslip run --restart DIR`: the run ends as one that nobody
+// disturbed, bit for bit on the same number of ranks.
+
+#include <gtest/gtest.h>
+
+#include "results/names.hpp"
+#include "results/state_file.hpp"
+#include "system/small_run.hpp"
+
+namespace polyslip::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// When to kill, by what is in the run folder.
+struct Moment {
+  const char* name;
+  std::function<bool(const fs::path& run)> has_come;
+  const char* restart_says;  ///< that follows a kill at this moment
+};
+
+bool has_rows(const fs::path& run, long count) { return line_count(run / "macro.csv") > count; }
+
+bool has_checkpoint(const fs::path& run, int number) {
+  return fs::exists(run / "checkpoints" / results::checkpoint_name(number));
+}
+
+bool has_part(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->path().extension() == ".part") return true;
+  return false;
+}
+
+/// In the order in which they come; each is later than all that a run killed before has reached.
+std::vector<Moment> moments() {
+  const char *over = "no checkpoint yet; starting over", *on = "going on from strain";
+  return {
+      {"while growing and meshing", [](auto& run) { return fs::exists(run / "log.txt"); }, over},
+      {"after two steps", [](auto& run) { return has_rows(run, 2); }, over},
+      {"after the first checkpoint", [](auto& run) { return has_checkpoint(run, 1); }, on},
+      {"between two checkpoints", [](auto& run) { return has_rows(run, 10); }, on},
+      {"while a checkpoint is written", [](auto& run) { return has_part(run / "checkpoints"); },
+       on},
+      {"while remeshing", [](auto& run) { return has_checkpoint(run, 3); }, on},
+      {"just after the remeshing",
+       [](auto& run) { return fs::exists(run / results::mesh_name(1)); }, on},
+      {"while reloading", [](auto& run) { return has_rows(run, 16); }, on},
+      {"late", [](auto& run) { return has_rows(run, 24); }, on},
+      {"while a state is written", [](auto& run) { return has_part(run / "results"); }, on},
+      {"while the summary or the picture is made",
+       [](auto& run) { return fs::exists(run / "summary.json"); }, on},
+  };
+}
+
+/// What a user's kill hits: the program on all ranks and their launcher. All else ends by itself.
+void kill_job(Program& program) {
+  program.kill({"polyslip", "mpirun", "orterun"});
+  const bool gone = eventually(30, [&] { return program.processes().empty(); });
+  for (const auto& [pid, name] : program.processes())
+    EXPECT_TRUE(gone) << "process " << pid << ", " << name << ", survives its run";
+}
+
+/// Files that have their name are whole.
+void expect_no_half_file(const fs::path& run) {
+  for (const auto* sub : {"checkpoints", "results"}) {
+    std::error_code error;
+    for (fs::directory_iterator it(run / sub, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == ".h5")
+        EXPECT_NO_THROW(results::verify_state(it->path().string())) << it->path();
+  }
+}
+
+/// The names of the files in a folder.
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& [name, content] : tree(folder)) names.push_back(name);
+  return names;
+}
+
+/// Curve, states, meshes, time series and the list of files are those of the other run.
+void expect_same_run(const fs::path& a, const fs::path& b) {
+  EXPECT_GT(line_count(a / "macro.csv"), 20);
+  for (const auto* file : {"macro.csv", "results.xdmf", "results/index.json", "mesh-000.msh",
+                           "mesh-001.msh", "polycrystal.tess", "deck.toml", "deck.resolved.toml"})
+    EXPECT_EQ(slurp(a / file), slurp(b / file)) << file;
+  EXPECT_EQ(names_in(a), names_in(b));
+  ASSERT_EQ(state_count(a), 5u);
+  ASSERT_EQ(state_count(b), 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    SCOPED_TRACE("state " + std::to_string(i));
+    expect_identical(state_of(a, i), state_of(b, i));
+  }
+}
+
+/// One run, killed at every moment in turn, against one that nobody disturbs.
+void kill_at_every_moment(int ranks) {
+  Sandbox sandbox;
+  run_deck(sandbox, ranks, small_deck(), "undisturbed");
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  sandbox.write("killed.toml", small_deck());
+  const fs::path run = sandbox.path() / "killed";
+  std::vector<std::string> arguments{"run", "killed.toml", "--out", "killed"};
+  std::string says = "polyslip";
+  for (const Moment& moment : moments()) {
+    SCOPED_TRACE(moment.name);
+    Program program(on_ranks(ranks, arguments), sandbox.path());
+    ASSERT_TRUE(eventually(120, [&] { return moment.has_come(run) || program.ended(); }));
+    kill_job(program);
+    const Outcome outcome = program.wait();
+    const std::string said = outcome.out + outcome.err;
+    EXPECT_NE(said.find(says), std::string::npos) << says << "\n" << said;
+    EXPECT_NE(outcome.code, 2) << said;
+    expect_no_half_file(run);
+    says = moment.restart_says;
+    arguments = {"run", "--restart", "killed"};
+  }
+  const Outcome outcome = run_program(on_ranks(ranks, arguments), sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
+  EXPECT_NE(outcome.out.find(says), std::string::npos) << outcome.out;
+  expect_same_run(sandbox.path() / "undisturbed", run);
+}
+
+TEST(Restart, AfterAKillAtAnyMomentEndsTheSame) { kill_at_every_moment(0); }
+TEST(Restart, AfterAKillAtAnyMomentEndsTheSameOnTwoRanks) { kill_at_every_moment(2); }
+
+/// What a kill can leave: rows, states and meshes beyond the checkpoint, torn lines, parts of
+/// files.
+TEST(Restart, TrimsWhatIsLaterThanItsCheckpoint) {
+  Sandbox sandbox;
+  run_deck(sandbox, 0, small_deck(), "undisturbed");
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  const fs::path undisturbed = sandbox.path() / "undisturbed", run = sandbox.path() / "killed";
+  fs::copy(undisturbed, run, fs::copy_options::recursive);
+  std::vector<std::string> checkpoints = names_in(run / "checkpoints");
+  ASSERT_EQ(checkpoints.size(), 2u);
+  fs::remove(run / "checkpoints" / checkpoints[1]);
+  const std::string half = slurp(run / "results/state-0004.h5").substr(0, 5000);
+  sandbox.write("killed/checkpoints/" + checkpoints[1] + ".part", half);
+  sandbox.write("killed/results/state-0005.h5.part", half);
+  sandbox.write("killed/results.xdmf.part", "<Xdmf");
+  sandbox.write("killed/macro.csv", slurp(run / "macro.csv") + "0.07,0.0");
+  const Outcome outcome = run_polyslip({"run", "--restart", "killed"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("going on from strain 0.05"), std::string::npos) << outcome.out;
+  expect_same_run(undisturbed, run);
+}
+
+/// It has nothing left to do, and does not harm what is there.
+TEST(Restart, OfARunThatHasEndedLeavesItAsItIs) {
+  Sandbox sandbox;
+  run_deck(sandbox, 0, small_deck(), "run");
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  fs::copy(sandbox.path() / "run", sandbox.path() / "before", fs::copy_options::recursive);
+  const Outcome outcome = run_polyslip({"run", "--restart", "run"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  expect_same_run(sandbox.path() / "before", sandbox.path() / "run");
+}
+
+}  // namespace
+}  // namespace polyslip::tests
