@@ -155,8 +155,9 @@ ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
       t.cauchy_stress[e] = mean<6>(*stress, e, w);
     else if (element_stress != nullptr)
       t.cauchy_stress[e] = plain(&element_stress->values[6 * static_cast<std::size_t>(e)]);
-    t.pressure[e] =
-        pressure != nullptr ? pressure->values[e] : -t.cauchy_stress[e].head<3>().sum() / 3;
+    t.pressure[e] = stress == nullptr && pressure != nullptr
+                        ? pressure->values[e]
+                        : -t.cauchy_stress[e].head<3>().sum() / 3;
   }
   return t;
 }

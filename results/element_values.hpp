@@ -23,7 +23,7 @@ struct ElementTable {
   std::vector<double> slip;                   ///< sum over the components of "slip"
   std::vector<double> equivalent_strain;
   std::vector<core::Vec6> cauchy_stress;  ///< plain components xx yy zz yz zx xy, MPa
-  std::vector<double> pressure;           ///< MPa: element field "pressure", else -tr sigma / 3
+  std::vector<double> pressure;  ///< MPa: -tr of `cauchy_stress` / 3 (element field if no stress)
 };
 
 /// Stress: the quadrature-point field "cauchy_stress", or else the element field of that name.

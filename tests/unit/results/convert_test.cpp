@@ -104,7 +104,7 @@ TEST(ElementValues, PointStressComesBeforeElementStress) {
   for (auto& v : s.find("cauchy_stress", Location::quadrature_point)->values) v = 3;
   auto t = results::element_values(s, ElementValue::average);
   EXPECT_NEAR((t.cauchy_stress[5] - core::Vec6::Constant(3)).norm(), 0, 1e-14);
-  EXPECT_EQ(t.pressure[5], s.find("pressure")->values[5]);
+  EXPECT_NEAR(t.pressure[5], -3, 1e-14);  // of the stress beside it in the table
   std::erase_if(s.fields, [](const auto& f) { return f.location == Location::element; });
   EXPECT_NEAR(results::element_values(s, ElementValue::average).pressure[5], -3, 1e-14);
   std::erase_if(s.fields, [](const auto& f) { return f.name != "displacement"; });
