@@ -12,10 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// When to kill, by what is in the run folder.
+/// When to kill, by what is in the run folder, the program having been started at `since`.
 struct Moment {
   const char* name;
-  std::function<bool(const fs::path& run)> has_come;
+  std::function<bool(const fs::path& run, fs::file_time_type since)> has_come;
   const char* restart_says;  ///< that follows a kill at this moment
 };
 
@@ -25,10 +25,12 @@ bool has_checkpoint(const fs::path& run, int number) {
   return fs::exists(run / "checkpoints" / results::checkpoint_name(number));
 }
 
-bool has_part(const fs::path& folder) {
-  std::error_code error;
+/// A state is being written (parts that an earlier kill left do not count).
+bool has_part(const fs::path& folder, fs::file_time_type since) {
+  std::error_code error, gone;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-    if (it->path().extension() == ".part") return true;
+    if (it->path().string().ends_with(".h5.part") && it->last_write_time(gone) > since && !gone)
+      return true;
   return false;
 }
 
@@ -36,20 +38,22 @@ bool has_part(const fs::path& folder) {
 std::vector<Moment> moments() {
   const char *over = "no checkpoint yet; starting over", *on = "going on from strain";
   return {
-      {"while growing and meshing", [](auto& run) { return fs::exists(run / "log.txt"); }, over},
-      {"after two steps", [](auto& run) { return has_rows(run, 2); }, over},
-      {"after the first checkpoint", [](auto& run) { return has_checkpoint(run, 1); }, on},
-      {"between two checkpoints", [](auto& run) { return has_rows(run, 10); }, on},
-      {"while a checkpoint is written", [](auto& run) { return has_part(run / "checkpoints"); },
-       on},
-      {"while remeshing", [](auto& run) { return has_checkpoint(run, 3); }, on},
+      {"while growing and meshing", [](auto& run, auto) { return fs::exists(run / "log.txt"); },
+       over},
+      {"after two steps", [](auto& run, auto) { return has_rows(run, 2); }, over},
+      {"after the first checkpoint", [](auto& run, auto) { return has_checkpoint(run, 1); }, on},
+      {"between two checkpoints", [](auto& run, auto) { return has_rows(run, 10); }, on},
+      {"while a checkpoint is written",
+       [](auto& run, auto since) { return has_part(run / "checkpoints", since); }, on},
+      {"while remeshing", [](auto& run, auto) { return has_checkpoint(run, 3); }, on},
       {"just after the remeshing",
-       [](auto& run) { return fs::exists(run / results::mesh_name(1)); }, on},
-      {"while reloading", [](auto& run) { return has_rows(run, 16); }, on},
-      {"late", [](auto& run) { return has_rows(run, 24); }, on},
-      {"while a state is written", [](auto& run) { return has_part(run / "results"); }, on},
+       [](auto& run, auto) { return fs::exists(run / results::mesh_name(1)); }, on},
+      {"while reloading", [](auto& run, auto) { return has_rows(run, 16); }, on},
+      {"late", [](auto& run, auto) { return has_rows(run, 24); }, on},
+      {"while a state is written",
+       [](auto& run, auto since) { return has_part(run / "results", since); }, on},
       {"while the summary or the picture is made",
-       [](auto& run) { return fs::exists(run / "summary.json"); }, on},
+       [](auto& run, auto) { return fs::exists(run / "summary.json"); }, on},
   };
 }
 
@@ -65,9 +69,11 @@ void kill_job(Program& program) {
 void expect_no_half_file(const fs::path& run) {
   for (const auto* sub : {"checkpoints", "results"}) {
     std::error_code error;
-    for (fs::directory_iterator it(run / sub, error), end; !error && it != end; it.increment(error))
-      if (it->path().extension() == ".h5")
-        EXPECT_NO_THROW(results::verify_state(it->path().string())) << it->path();
+    for (fs::directory_iterator it(run / sub, error), end; !error && it != end;
+         it.increment(error)) {
+      if (it->path().extension() != ".h5") continue;
+      EXPECT_NO_THROW(results::verify_state(it->path().string())) << it->path();
+    }
   }
 }
 
@@ -104,8 +110,9 @@ void kill_at_every_moment(int ranks) {
   std::string says = "polyslip";
   for (const Moment& moment : moments()) {
     SCOPED_TRACE(moment.name);
+    const auto since = fs::file_time_type::clock::now();
     Program program(on_ranks(ranks, arguments), sandbox.path());
-    ASSERT_TRUE(eventually(120, [&] { return moment.has_come(run) || program.ended(); }));
+    ASSERT_TRUE(eventually(120, [&] { return moment.has_come(run, since) || program.ended(); }));
     kill_job(program);
     const Outcome outcome = program.wait();
     const std::string said = outcome.out + outcome.err;
