@@ -18,8 +18,8 @@ inline constexpr std::array<std::array<int, 2>, 6> tetrahedron_edges{
 inline constexpr std::array<std::array<int, 2>, 3> triangle_edges{{{0, 1}, {1, 2}, {2, 0}}};
 
 struct Mesh {
-  int order = 2;                         ///< 2: mid nodes present; 1: entries of mid nodes are -1
-  std::vector<core::Vec3> nodes;         ///< positions, lengths for grains of unit mean volume
+  int order = 2;                  ///< 2: mid nodes present; 1: entries of mid nodes are -1
+  std::vector<core::Vec3> nodes;  ///< positions, lengths for grains of unit mean volume
   std::vector<std::array<int, 10>> tetrahedra;  ///< positive: det(x1-x0, x2-x0, x3-x0) > 0
   std::vector<int> tetrahedron_cell;            ///< grain; tetrahedra are sorted by grain
   std::vector<std::array<int, 6>> triangles;    ///< normal out of topology.faces[f].cells[0]
@@ -28,7 +28,7 @@ struct Mesh {
   std::vector<int> line_edge;                   ///< sorted by edge; lines of an edge in its order
   std::vector<int> vertex_nodes;                ///< [topology.vertex_count] node of each vertex
   Topology topology;
-  core::Vec3 size{1, 1, 1};                     ///< box at zero strain
+  core::Vec3 size{1, 1, 1};  ///< box at zero strain
 
   int element_count() const { return static_cast<int>(tetrahedra.size()); }
   int node_count() const { return static_cast<int>(nodes.size()); }

@@ -34,12 +34,12 @@ struct Field {
 /// Solver history (predictor, step control) travels in fields and `history` marked not_carried.
 struct Snapshot {
   Mesh mesh;
-  int mesh_number = 0;              ///< 0 for the first mesh, +1 a remeshing
+  int mesh_number = 0;  ///< 0 for the first mesh, +1 a remeshing
   int quadrature_points = 4;
   std::vector<Field> fields;
   std::map<std::string, std::vector<double>> history;
-  double time = 0;                  ///< s
-  double strain = 0;                ///< ln(h0/h)
+  double time = 0;                                ///< s
+  double strain = 0;                              ///< ln(h0/h)
   std::map<std::string, std::string> provenance;  ///< version, deck hash, seed, ...
 
   const Field* find(const std::string& name) const {

@@ -16,11 +16,12 @@ struct TopologyEdge {
 };
 
 struct TopologyFace {
-  std::vector<int> edges;       ///< in the order of the loop
-  std::vector<bool> forward;    ///< whether the loop runs along edges[i] from its vertex 0 to 1
-  std::array<int, 2> cells{-1, -1};  ///< the normal (right-hand rule on the loop) points out of
-                                     ///< cells[0] into cells[1]; cells[1] = -1 on the domain boundary
-  int domain_face = -1;         ///< 0 ... 5 on the domain boundary, else -1
+  std::vector<int> edges;     ///< in the order of the loop
+  std::vector<bool> forward;  ///< whether the loop runs along edges[i] from its vertex 0 to 1
+  std::array<int, 2> cells{-1,
+                           -1};  ///< the normal (right-hand rule on the loop) points out of
+                                 ///< cells[0] into cells[1]; cells[1] = -1 on the domain boundary
+  int domain_face = -1;          ///< 0 ... 5 on the domain boundary, else -1
 };
 
 /// Ids are 0-based indices; files add one.
