@@ -4,6 +4,7 @@
 
 #include "core/deck.hpp"
 #include "core/deck_impl.hpp"
+#include "core/hash.hpp"
 
 namespace polyslip::core {
 
@@ -52,11 +53,9 @@ std::string Deck::resolved() const {
 
 // FNV-1a, 64 bit, over section.key=value lines.
 std::string Deck::fingerprint() const {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const auto& d : impl_->declarations)
-    for (const char c : d.section + "." + d.key + "=" + d.value + "\n")
-      hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
+  std::string text;
+  for (const auto& d : impl_->declarations) text += d.section + "." + d.key + "=" + d.value + "\n";
+  return fmt::format("{:016x}", fnv1a(text));
 }
 
 std::string Deck::reference() const {

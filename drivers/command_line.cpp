@@ -1,5 +1,7 @@
 #include "drivers/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -20,8 +22,8 @@ void add_threads(CLI::App& verb, Command& c) {
       ->capture_default_str();
 }
 
-void add_overwrite(CLI::App& verb, Command& c) {
-  verb.add_flag("--overwrite", c.overwrite, "Replace an earlier run in the folder");
+void add_overwrite(CLI::App& verb, Command& c, const char* what) {
+  verb.add_flag("--overwrite", c.overwrite, what);
 }
 
 void add_run(CLI::App& app, Command& c) {
@@ -32,7 +34,7 @@ void add_run(CLI::App& app, Command& c) {
   verb->add_option("--restart", c.restart, "Go on with the run in this folder")
       ->excludes(deck)
       ->excludes(out);
-  add_overwrite(*verb, c);
+  add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
   verb->callback([&c] {
     c.verb = Verb::run;
@@ -55,7 +57,7 @@ void add_mesh(CLI::App& app, Command& c) {
   CLI::App* verb = app.add_subcommand("mesh", "Grow and mesh a polycrystal only");
   add_deck(*verb, c);
   verb->add_option("--out", c.out, "Folder")->required();
-  add_overwrite(*verb, c);
+  add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
   verb->callback([&c] { c.verb = Verb::mesh; });
 }
@@ -70,7 +72,7 @@ void add_convert(CLI::App& app, Command& c) {
   verb->add_option("--value", c.value, "Averages of elements, or values at their centroids")
       ->check(CLI::IsMember({"average", "centroid"}))
       ->capture_default_str();
-  add_overwrite(*verb, c);
+  add_overwrite(*verb, c, "Replace a file that is no such table");
   verb->callback([&c] { c.verb = Verb::convert; });
 }
 
@@ -85,6 +87,18 @@ std::string one_line(std::string text) {
     if (character == '\n') character = ' ';
   while (!text.empty() && text.back() == ' ') text.pop_back();
   return text;
+}
+
+/// The first argument is a verb, or an option of the program.
+void require_verb(const CLI::App& app, int argc, const char* const* argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) {
+    if (verb->get_name() == argv[1]) return;
+    verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+  }
+  throw core::InputError(
+      fmt::format("polyslip: unknown verb '{}'; there are {} (polyslip --help)", argv[1], verbs));
 }
 
 }  // namespace
@@ -102,6 +116,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
   add_mesh(app, command);
   add_convert(app, command);
   add_reference(app, command);
+  require_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

@@ -1,10 +1,10 @@
 #include "drivers/mesh_verb.hpp"
 
 #include "core/deck.hpp"
-#include "core/file.hpp"
 #include "core/log.hpp"
 #include "core/timer.hpp"
 #include "core/version.hpp"
+#include "drivers/deck_record.hpp"
 #include "drivers/generate.hpp"
 #include "drivers/options.hpp"
 #include "results/folder.hpp"
@@ -18,10 +18,10 @@ void make_mesh(const std::string& deck_path, const std::string& folder, bool ove
   const double wall_start = core::wall_seconds();
   core::Deck deck = core::Deck::from_file(deck_path);
   const Options options = read_options(deck, Purpose::mesh);
+  results::check_deck_place(folder, deck.text(), overwrite);
   results::prepare_run_folder(folder, overwrite);
   const auto path = [&folder](std::string_view name) { return results::in_folder(folder, name); };
-  core::write_file(path(results::deck_name), deck.text());
-  core::write_file(path(results::resolved_deck_name), deck.resolved());
+  write_decks(folder, deck.text(), deck.resolved());
   core::Log log;
   log.to_file(path(results::log_name));
   core::StageTimes times;

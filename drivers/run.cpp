@@ -1,5 +1,6 @@
 #include "drivers/run.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "core/log.hpp"
 #include "core/timer.hpp"
 #include "core/version.hpp"
+#include "drivers/deck_record.hpp"
 #include "drivers/generate.hpp"
 #include "drivers/on_root.hpp"
 #include "drivers/options.hpp"
@@ -110,6 +112,11 @@ void Run::read_deck() {
     fingerprint_ = deck.fingerprint();
   };
   on_root(comm_, [&] {
+    if (request_.restart && !std::filesystem::exists(file))
+      throw core::InputError(file +
+                             ": no such file, so there is no run to go on with; start one "
+                             "with polyslip run DECK.toml --out " +
+                             request_.folder);
     text = core::read_text(file);
     understand();
     orientations_ = grain_orientations(options_);
@@ -131,9 +138,10 @@ void Run::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& 
 }
 
 mesh::Snapshot Run::begin_anew() {
-  results::prepare_run_folder(request_.folder, request_.overwrite || request_.restart);
-  core::write_file(path(results::resolved_deck_name), resolved_);
-  core::write_file(path(results::deck_name), deck_text_);
+  if (request_.restart) require_unedited_deck(request_.folder);
+  results::prepare_run_folder(request_.folder, request_.overwrite || request_.restart,
+                              request_.restart);
+  if (!request_.restart) write_decks(request_.folder, deck_text_, resolved_);
   log_.to_file(path(results::log_name));
   log_.info("polyslip {}: {}", core::version(), request_.folder);
   if (request_.restart) log_.warning("{}: no checkpoint yet; starting over", request_.folder);
@@ -149,8 +157,9 @@ mesh::Snapshot Run::take_up(const results::CheckpointFile& file) {
   require_own_deck(snapshot, file.path);
   progress_ = RunProgress::from_text(snapshot.provenance.at(progress_key));
   mesh_number_ = snapshot.mesh_number;
-  macro_ = results::MacroCsv::resume(path(results::macro_name), progress_.rows);
   states_.emplace(request_.folder);
+  states_->require_first(static_cast<std::size_t>(progress_.states));
+  macro_ = results::MacroCsv::resume(path(results::macro_name), progress_.rows);
   states_->keep_first(static_cast<std::size_t>(progress_.states));
   log_.to_file(path(results::log_name));
   log_.info("polyslip {}: {}: going on from strain {:.6g} ({})", core::version(), request_.folder,
@@ -230,7 +239,9 @@ void Run::remesh(const mesh::Snapshot& old) {
   progress_.just_remeshed = true;
   ++mesh_number_;
   build_model(fresh);
-  store(model_->snapshot());
+  mesh::Snapshot snapshot = model_->snapshot();
+  store(snapshot);
+  write_checkpoint(snapshot);
 }
 
 void Run::step(double target) {
@@ -297,7 +308,10 @@ void Run::stop(const std::string& reason) {
 int Run::go() {
   read_deck();
   if (!request_.restart)
-    on_root(comm_, [&] { results::check_run_folder(request_.folder, request_.overwrite); });
+    on_root(comm_, [&] {
+      results::check_run_folder(request_.folder, request_.overwrite);
+      results::check_deck_place(request_.folder, deck_text_, request_.overwrite);
+    });
   try {
     const mesh::Snapshot snapshot = begin();
     build_model(snapshot);

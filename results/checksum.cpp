@@ -14,7 +14,7 @@ namespace {
 
 [[noreturn]] void damaged(const std::string& path, const std::string& how) {
   throw core::InputError(fmt::format(
-      "{}: checkpoint is damaged ({}); restart from another one or run anew", path, how));
+      "{}: is damaged ({}); restart from a checkpoint before it or run anew", path, how));
 }
 
 /// The header of a body of this length and CRC-32.

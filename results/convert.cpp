@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -50,10 +51,24 @@ void write_table(const std::string& path, const mesh::Mesh& mesh, const ElementT
   core::publish_part(path);
 }
 
+/// A table of an earlier conversion may be replaced; any other file, once lost, is lost.
+void check_target(const std::string& csv, bool overwrite) {
+  if (std::filesystem::is_directory(csv))
+    throw core::InputError(csv + ": is a folder; give the name of a file with --to");
+  if (overwrite || !std::filesystem::exists(csv)) return;
+  std::string line;
+  std::ifstream in(csv);
+  std::getline(in, line);
+  if (line != element_header)
+    throw core::InputError(csv +
+                           ": is there and is no table of elements; give another name with --to, "
+                           "or replace it with --overwrite");
+}
+
 }  // namespace
 
 StateRecord convert(const std::string& run_folder, double strain, const std::string& csv,
-                    ElementValue value) {
+                    ElementValue value, bool overwrite) {
   if (!std::isfinite(strain))
     throw core::InputError(fmt::format("strain {}: give a finite number", strain));
   const StateSeries series(run_folder);
@@ -61,6 +76,7 @@ StateRecord convert(const std::string& run_folder, double strain, const std::str
     throw core::InputError(run_folder +
                            ": holds no stored state; give the folder of a run that has begun");
   const StateRecord state = nearest_state(series, strain);
+  check_target(csv, overwrite);
   const auto snapshot = read_state(series.path(state));
   write_table(csv, snapshot.mesh, element_values(snapshot, value));
   return state;

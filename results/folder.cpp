@@ -87,9 +87,24 @@ void check_run_folder(const std::string& folder, bool overwrite) {
                     folder, files.front(), files.size() - 1));
 }
 
-void prepare_run_folder(const std::string& folder, bool overwrite) {
+void check_deck_place(const std::string& folder, const std::string& deck_text, bool overwrite) {
+  const std::string path = in_folder(folder, deck_name);
+  if (!overwrite && fs::exists(path) && core::read_text(path) != deck_text)
+    throw core::InputError(
+        path + ": is another deck; give another folder with --out, or replace it with --overwrite");
+}
+
+void prepare_run_folder(const std::string& folder, bool overwrite, bool keep_resolved_deck) {
   check_run_folder(folder, overwrite);
-  for (const auto& file : run_files(folder)) {
+  auto files = run_files(folder);
+  const auto resolved = std::find(files.begin(), files.end(), resolved_deck_name);
+  if (resolved != files.end()) {
+    if (keep_resolved_deck)
+      files.erase(resolved);
+    else
+      std::rotate(files.begin(), resolved, resolved + 1);
+  }
+  for (const auto& file : files) {
     std::error_code error;
     fs::remove(in_folder(folder, file), error);
     if (error)

@@ -94,7 +94,7 @@ One row an element, in the order of the mesh file of the state's mesh number: ce
 orientation quaternion q0 ... q3 = w x y z, slip resistance g, accumulated slip, equivalent strain,
 stress, pressure. `--value average` (default): the element values above. `--value centroid`: the
 value at the centroid of the linear function through the four quadrature points; quaternions
-likewise, normalised afterwards.
+likewise, normalised afterwards. An earlier table is replaced, any other file with `--overwrite` only.
 
 )";
 

@@ -86,7 +86,7 @@ const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot) {
   return states_.back();
 }
 
-void StateSeries::keep_first(std::size_t count) {
+void StateSeries::require_first(std::size_t count) const {
   if (count > states_.size())
     throw core::InputError(
         fmt::format("{}: index names {} states where the checkpoint needs {}; run anew",
@@ -95,6 +95,10 @@ void StateSeries::keep_first(std::size_t count) {
     if (!fs::exists(path(states_[i])))
       throw core::InputError(
           fmt::format("{}: no such file; put it back or run anew", path(states_[i])));
+}
+
+void StateSeries::keep_first(std::size_t count) {
+  require_first(count);
   states_.resize(count);
   write_index();
   std::vector<fs::path> late;

@@ -19,8 +19,10 @@ class StateSeries {
 
   /// Stores the next state: results/state-<n>.h5. InputError if it cannot be written.
   const StateRecord& store(const mesh::Snapshot& snapshot);
-  /// Keeps the first `count` states; deletes the files of later ones and of interrupted writes, and
-  /// rewrites the XDMF file. InputError if there are fewer, or one of their files is missing.
+  /// InputError if there are fewer states, or one of their files is missing. Touches nothing.
+  void require_first(std::size_t count) const;
+  /// `require_first`, then keeps the first `count` states; deletes the files of later ones and of
+  /// interrupted writes, and rewrites the XDMF file.
   void keep_first(std::size_t count);
   /// The same, keeping the states up to and including `strain` (and its far side of a remeshing).
   void trim_after(double strain);

@@ -69,7 +69,8 @@ int check(const Command& command) {
 int convert(const Command& command) {
   const auto state = results::convert(command.folder, command.at_strain, command.to,
                                       command.value == "centroid" ? results::ElementValue::centroid
-                                                                  : results::ElementValue::average);
+                                                                  : results::ElementValue::average,
+                                      command.overwrite);
   std::cout << command.to << ": the state at strain " << state.strain << " (" << state.file
             << ")\n";
   return drivers::exit_fine;

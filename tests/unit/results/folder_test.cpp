@@ -103,7 +103,7 @@ TEST(Checkpoints, ADamagedOneIsNamedWithTheWayOut) {
   const std::string newest = folder / "checkpoints/checkpoint-0001.h5";
   fs::resize_file(newest, fs::file_size(newest) / 2);
   auto error = error_of([&] { results::newest_valid_checkpoint(folder.path()); });
-  EXPECT_NE(error.find("checkpoint-0001.h5: checkpoint is damaged ("), std::string::npos) << error;
+  EXPECT_NE(error.find("checkpoint-0001.h5: is damaged ("), std::string::npos) << error;
   EXPECT_NE(error.find("delete this file to restart from"), std::string::npos) << error;
   EXPECT_NE(error.find("checkpoint-0000.h5"), std::string::npos) << error;
   fs::remove(newest);

@@ -110,7 +110,7 @@ TEST(StateFile, EveryDamageIsOneClearLine) {
   const auto expect_damaged = [&](const std::string& bytes, const std::string& how) {
     tests::spit(folder / "x.h5", bytes);
     const std::string error = error_of(folder / "x.h5");
-    EXPECT_NE(error.find("x.h5: checkpoint is damaged ("), std::string::npos) << how << error;
+    EXPECT_NE(error.find("x.h5: is damaged ("), std::string::npos) << how << error;
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   };
   for (const std::size_t length :
