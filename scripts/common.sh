@@ -7,7 +7,7 @@ packages=(
   g++ cmake ninja-build pkg-config ccache git ca-certificates
   petsc-dev libpetsc-real-dev libopenmpi-dev openmpi-bin libscotch-dev
   libhdf5-openmpi-dev libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev libspdlog-dev
-  nlohmann-json3-dev voro++-dev libnanoflann-dev libgmsh-dev libnglib-dev libpng-dev
+  nlohmann-json3-dev voro++-dev libnanoflann-dev libgmsh-dev libnglib-dev libpng-dev zlib1g-dev
   libgtest-dev libbenchmark-dev clang-format-14 python3
 )
 
