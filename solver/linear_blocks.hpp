@@ -27,7 +27,9 @@ struct LinearLayout {
 /// already eliminated (unit diagonal in A, zero columns in B). The augmentation W is one positive
 /// number an element; min(4 mu_e, K) / V_e is a good one (W = 1/C condenses the pressure exactly),
 /// mu_e being half the geometric mean of the five eigenvalues of the deviatoric tangent: det^(1/5)
-/// / 2, meaned over the points (with the harmonic mean iterations double).
+/// / 2, meaned over the points (with the harmonic mean iterations double). Whoever wants a volume
+/// residual to count in the solver's 2-norm scales the rows of B (and B^T, C, W, schur with them)
+/// to units of force.
 struct LinearBlocks {
   Mat A = nullptr;            ///< BAIJ/AIJ, block size 3; not used in the augmented form
   Mat A_augmented = nullptr;  ///< A + B^T W B; = A for the displacement element
