@@ -188,7 +188,7 @@ std::vector<GrainResult> MesherPool::mesh(const std::vector<GrainRequest>& reque
       sound.push_back(requests[i]);
       place.push_back(i);
     } else {
-      candidates[i].faults[0] = fmt::format("grain {}: {}", requests[i].grain, fault);
+      candidates[i].faults[0] = fmt::format("grain {}: {}", requests[i].grain + 1, fault);
     }
   }
   std::list<MesherTask> tasks;

@@ -116,8 +116,8 @@ void MesherTask::obey(const protocol::Header& header, const protocol::Bytes& pay
 }
 
 void MesherTask::fail(const std::string& why) {
-  sink_.take_fault(next_,
-                   fmt::format("mesher '{}', grain {}: {}", mesher_, requests_[next_].grain, why));
+  sink_.take_fault(
+      next_, fmt::format("mesher '{}', grain {}: {}", mesher_, requests_[next_].grain + 1, why));
   ++next_;
   failed_ = true;
 }

@@ -36,7 +36,8 @@ struct GrainResult {
   VolumeMesh mesh;     ///< the best: see MesherPool::mesh
   std::string mesher;  ///< the winner
   double O = 0;
-  std::vector<std::string> faults;  ///< one line for each failed candidate: mesher, grain, why
+  /// one line for each failed candidate: mesher, grain (from 1), why
+  std::vector<std::string> faults;
 };
 
 struct PoolOptions {

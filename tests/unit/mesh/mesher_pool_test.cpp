@@ -159,7 +159,7 @@ TEST_P(InjectedFault, CostsOneCandidate) {
     EXPECT_EQ(result.faults.size(), result.grain == 3 ? 1U : 0U);
   }
   ASSERT_EQ(one[3].faults.size(), 1U);
-  EXPECT_EQ(one[3].faults[0].find("mesher 'gmsh-hxt', grain 3: "), 0U);
+  EXPECT_EQ(one[3].faults[0].find("mesher 'gmsh-hxt', grain 4: "), 0U);
   EXPECT_NE(one[3].faults[0].find(GetParam().text), std::string::npos) << one[3].faults[0];
   EXPECT_EQ(one[3].mesher, "gmsh-delaunay");
   if (GetParam().kind == "hang") return;
@@ -190,7 +190,7 @@ TEST(MesherPool, AGrainWithoutAnyMeshIsNotOk) {
     EXPECT_FALSE(results[i].faults.empty());
     EXPECT_TRUE(results[i].mesh.tetrahedra.empty());
   }
-  EXPECT_EQ(results[0].faults[0], "grain 0: node 5 of its surface is not finite");
+  EXPECT_EQ(results[0].faults[0], "grain 1: node 5 of its surface is not finite");
   EXPECT_EQ(results[1].faults.size(), 3U);
   EXPECT_TRUE(results[3].ok);
   EXPECT_TRUE(results[3].faults.empty());
