@@ -1,17 +1,22 @@
 #include "drivers/generate.hpp"
 
+#include "core/error.hpp"
+#include "drivers/orientations.hpp"
 #include "mesh/tessellation.hpp"
 #include "results/names.hpp"
 
 namespace polyslip::drivers {
 namespace {
 
-mesh::Tessellation grow(const Options& options, core::Log& log) {
-  mesh::Tessellation tessellation = mesh::voronoi_tessellation(options.polycrystal);
+mesh::Tessellation grow(const Options& options, Input& input, core::Log& log) {
+  const bool given = input.tessellation.has_value();
+  mesh::Tessellation tessellation = given ? std::move(input.tessellation->tessellation)
+                                          : mesh::voronoi_tessellation(options.polycrystal);
   const core::Vec3& size = tessellation.size;
-  log.info(
-      "polycrystal: {} grains, seed {}, box {:.4g} x {:.4g} x {:.4g} (grains of unit mean volume)",
-      options.polycrystal.grains, options.polycrystal.seed, size[0], size[1], size[2]);
+  log.info("polycrystal: {} grains, {}, box {:.4g} x {:.4g} x {:.4g} (grains of unit mean volume)",
+           tessellation.topology.cell_count(),
+           given ? *options.input.tessellation : fmt::format("seed {}", options.polycrystal.seed),
+           size[0], size[1], size[2]);
   const mesh::RegularisationReport report = mesh::regularise(tessellation, options.regularisation);
   log.info(
       "regularisation: {} of {} edges were short, {} are left; {} deletions in {} loops; {} "
@@ -36,13 +41,65 @@ void log_meshing(const mesh::Mesh& mesh, const mesh::MeshingReport& report,
   if (!repairs.empty()) log.info("mesh: {}", repairs);
 }
 
+mesh::Mesh take_mesh(const Options& options, Input& input, core::Log& log) {
+  mesh::Mesh mesh = std::move(input.mesh->mesh);
+  const auto& t = mesh.topology;
+  const mesh::QualitySummary quality = mesh::quality(mesh);
+  log.info(
+      "mesh: {}: {} grains with {} faces, {} edges and {} vertices; box {:.4g} x {:.4g} x {:.4g}",
+      *options.input.mesh, t.cell_count(), t.faces.size(), t.edges.size(), t.vertex_count,
+      mesh.size[0], mesh.size[1], mesh.size[2]);
+  log.info("mesh: {} elements, {} nodes; radius ratio {:.3f} worst, {:.3f} mean",
+           mesh.element_count(), mesh.node_count(), quality.min_radius_ratio,
+           quality.mean_radius_ratio);
+  return mesh;
+}
+
+void read_files(const Options& options, Input& input) {
+  if (options.input.tessellation) input.tessellation = mesh::read_tess(*options.input.tessellation);
+  if (!options.input.mesh) return;
+  input.mesh = mesh::read_msh(*options.input.mesh, options.input.length_unit);
+  if (input.mesh->mesh.order != options.mesh.order)
+    throw core::InputError(
+        fmt::format("{}: elements of order {}, but the deck has order = {} in "
+                    "[mesh]; give a mesh of that order, or change the key",
+                    *options.input.mesh, input.mesh->mesh.order, options.mesh.order));
+}
+
 }  // namespace
 
-mesh::Mesh generate_polycrystal(const Options& options, const std::string& folder,
+Input read_input(const Options& options) {
+  Input input;
+  read_files(options, input);
+  Options counted = options;
+  const std::optional<std::vector<core::Quaternion>>* given = nullptr;
+  if (input.tessellation) {
+    counted.polycrystal.grains = input.tessellation->tessellation.topology.cell_count();
+    given = &input.tessellation->orientations;
+  } else if (input.mesh) {
+    counted.polycrystal.grains = input.mesh->mesh.topology.cell_count();
+    given = &input.mesh->orientations;
+  }
+  input.orientations_of_input =
+      options.orientations.distribution == "input" && given && given->has_value();
+  input.orientations = input.orientations_of_input ? **given : grain_orientations(counted);
+  return input;
+}
+
+mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std::string& folder,
                                 mesh::MesherPool& pool, core::Log& log, core::StageTimes& times) {
+  if (options.input.any())
+    log.info("orientations: {}", input.orientations_of_input ? "those of the file"
+                                 : options.orientations.file ? *options.orientations.file
+                                                             : "uniform, from the seed");
+  if (input.mesh) {
+    mesh::Mesh mesh = take_mesh(options, input, log);
+    mesh::write_msh(mesh, results::in_folder(folder, results::mesh_name(0)));
+    return mesh;
+  }
   const mesh::Tessellation tessellation = [&] {
     const auto measure = times.measure("polycrystal");
-    return grow(options, log);
+    return grow(options, input, log);
   }();
   mesh::write_tess(tessellation, results::in_folder(folder, results::tessellation_name));
 

@@ -19,13 +19,14 @@ void make_mesh(const std::string& deck_path, const std::string& folder, bool ove
   core::Deck deck = core::Deck::from_file(deck_path);
   const Options options = read_options(deck, Purpose::mesh);
   results::check_deck_place(folder, deck.text(), overwrite);
+  Input input = read_input(options);
   results::prepare_run_folder(folder, overwrite);
   const auto path = [&folder](std::string_view name) { return results::in_folder(folder, name); };
   write_decks(folder, deck.text(), deck.resolved());
   core::Log log;
   log.to_file(path(results::log_name));
   core::StageTimes times;
-  const mesh::Mesh mesh = generate_polycrystal(options, folder, pool, log, times);
+  const mesh::Mesh mesh = generate_polycrystal(options, input, folder, pool, log, times);
 
   results::Summary summary;
   summary.completed = true;

@@ -1,5 +1,7 @@
 #include "drivers/options.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "drivers/options_check.hpp"
@@ -11,38 +13,72 @@ namespace {
 
 using core::Deck;
 
-mesh::PolycrystalOptions read_polycrystal(Deck& deck) {
+/// Whether a key has a meaning beside an input file. One that has none is declared only if the deck
+/// gives it, which is a fault, so that the resolved deck does without.
+bool counts(Deck& deck, const char* section, const char* key, const char* input) {
+  if (!input) return true;
+  if (!deck.given(section, key)) return false;
+  deck.fault(section, key, fmt::format("{} is not used with {}; remove one of them", key, input));
+  return true;
+}
+
+const char* mesh_input(const Deck& deck) {
+  return deck.given("mesh", "file") ? "[mesh] file" : nullptr;
+}
+
+mesh::PolycrystalOptions read_polycrystal(Deck& deck, InputOptions& input) {
   auto t =
       deck.table("polycrystal",
                  "The Voronoi polycrystal. The box is scaled so that grains have unit mean "
                  "volume, which fixes the unit of every length of the deck and of the results.");
   mesh::PolycrystalOptions o;
-  o.grains = static_cast<int>(t.integer(
-      "grains", {.fallback = o.grains, .min = 1, .max = 1'000'000, .help = "Number of grains."}));
+  const char* made = mesh_input(deck);
+  if (counts(deck, "polycrystal", "file", made))
+    input.tessellation = t.optional_file(
+        "file",
+        {.help =
+             "A tessellation of a box made elsewhere, in Neper's format (`.tess`, version 3 and "
+             "later, `.gz` too), instead of a new one: grains and domain are then the file's. "
+             "It is scaled likewise. A relative path starts at the deck's folder."});
+  if (!made && input.tessellation) made = "[polycrystal] file";
+  if (counts(deck, "polycrystal", "grains", made))
+    o.grains = static_cast<int>(t.integer(
+        "grains", {.fallback = o.grains, .min = 1, .max = 1'000'000, .help = "Number of grains."}));
   o.seed = static_cast<std::uint64_t>(t.integer(
       "seed", {.fallback = static_cast<std::int64_t>(o.seed),
                .min = 0,
                .help = "Same seed, same polycrystal and same uniform orientations, on any "
                        "number of threads and ranks."}));
-  o.domain = t.vector3("domain", {.fallback = std::vector<double>{1, 1, 1},
-                                  .min = 0,
-                                  .exclusive_min = true,
-                                  .help = "Shape of the box along x (RD), y (TD) and z (ND); only "
-                                          "the ratios count."});
+  if (counts(deck, "polycrystal", "domain", made))
+    o.domain =
+        t.vector3("domain", {.fallback = std::vector<double>{1, 1, 1},
+                             .min = 0,
+                             .exclusive_min = true,
+                             .help = "Shape of the box along x (RD), y (TD) and z (ND); only "
+                                     "the ratios count."});
   return o;
 }
 
-mesh::RegularisationOptions read_regularisation(Deck& deck) {
+mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& input) {
   auto t = deck.table("regularisation",
                       "Removal of short edges of the tessellation (section 2.1.2 of the paper).");
   mesh::RegularisationOptions o;
+  if (const char* made = mesh_input(deck)) {
+    bool given = false;
+    for (const char* key :
+         {"max_edge_length", "max_flatness_fault", "polyline_share", "polyline_angle"})
+      given |= counts(deck, "regularisation", key, made);
+    if (!given) return o;
+  }
+  if (input.tessellation) o.max_edge_length = 0;
   o.max_edge_length =
       t.number("max_edge_length", {.unit = "length",
                                    .fallback = o.max_edge_length,
                                    .min = 0,
                                    .max = 1,
                                    .help = "l_max: edges shorter than this are removed where "
-                                           "flatness allows; 0 removes none."});
+                                           "flatness allows; 0 removes none, and is the "
+                                           "default for a tessellation from a file."});
   o.max_flatness_fault =
       t.number("max_flatness_fault", {.unit = "degrees",
                                       .fallback = o.max_flatness_fault,
@@ -71,9 +107,25 @@ mesh::RegularisationOptions read_regularisation(Deck& deck) {
   return o;
 }
 
-mesh::MeshingOptions read_mesh(Deck& deck) {
+mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
   auto t = deck.table("mesh", "The finite-element mesh, the first one and those of remeshings.");
   mesh::MeshingOptions o;
+  input.mesh = t.optional_file(
+      "file",
+      {.help =
+           "The first mesh, made elsewhere, in Gmsh's format 2.2 (`.msh`, ASCII, `.gz` too), "
+           "grains "
+           "as physical volumes, of a box; its grains' faces, edges and vertices are found from "
+           "them. [polycrystal] and [regularisation] then have no meaning, but for the seed of "
+           "uniform orientations. The other keys here are those of remeshings. A relative path "
+           "starts at the deck's folder."});
+  const std::string unit = t.text(
+      "length_unit",
+      {.fallback = "grain",
+       .choices = {"grain", "file"},
+       .help = "With a mesh from a file: lengths of the deck and of the results are for grains of "
+               "unit mean volume, to which the mesh is scaled, or in the file's unit."});
+  input.length_unit = unit == "file" ? mesh::LengthUnit::file : mesh::LengthUnit::grain;
   o.element_size = t.number("element_size", {.unit = "length",
                                              .fallback = o.element_size,
                                              .min = 0.01,
@@ -105,13 +157,16 @@ mesh::MeshingOptions read_mesh(Deck& deck) {
   return o;
 }
 
-OrientationOptions read_orientation_options(Deck& deck) {
+OrientationOptions read_orientation_options(Deck& deck, const InputOptions& input) {
   auto t = deck.table("orientations", "Initial crystal orientations, one a grain.");
   OrientationOptions o;
+  if (input.any()) o.distribution = "input";
   o.distribution =
       t.text("distribution", {.fallback = o.distribution,
-                              .choices = {"uniform", "file"},
-                              .help = "Uniform random orientations from the seed, or a file."});
+                              .choices = {"uniform", "file", "input"},
+                              .help = "Uniform random orientations from the seed, a file, or "
+                                      "(the default with [polycrystal] file or [mesh] file) "
+                                      "those of that file, uniform ones if it has none."});
   o.file = t.optional_file(
       "file",
       {.help = "With distribution = \"file\": one orientation a line, as many lines as "
@@ -293,10 +348,10 @@ OutputOptions read_output(Deck& deck) {
 
 Options declare(Deck& deck) {
   Options o;
-  o.polycrystal = read_polycrystal(deck);
-  o.regularisation = read_regularisation(deck);
-  o.mesh = read_mesh(deck);
-  o.orientations = read_orientation_options(deck);
+  o.polycrystal = read_polycrystal(deck, o.input);
+  o.regularisation = read_regularisation(deck, o.input);
+  o.mesh = read_mesh(deck, o.input);
+  o.orientations = read_orientation_options(deck, o.input);
   o.material = read_material(deck);
   o.loading = read_loading(deck);
   o.remeshing = read_remeshing(deck);
@@ -311,7 +366,8 @@ Options read_options(Deck& deck, Purpose purpose) {
   Options options = declare(deck);
   check_options(deck, options, purpose);
   deck.finish();
-  if (options.orientations.file) grain_orientations(options);  // its faults show before any work
+  // Its faults show before any work; of an input file the number of grains is not known yet.
+  if (options.orientations.file && !options.input.any()) grain_orientations(options);
   return options;
 }
 
@@ -326,8 +382,8 @@ std::string deck_reference() {
          "default, an unknown key or table is an error,\nand the run folder keeps the deck as "
          "given "
          "and, in `deck.resolved.toml`, with every default.\n\n"
-         "Lengths are for grains of unit mean volume: a grain is about 1.24 across. Strains are "
-         "true\n"
+         "Lengths are for grains of unit mean volume: a grain is about 1.24 across (a mesh from a "
+         "file may\nkeep its unit). Strains are true\n"
          "strains along z, ln(initial height/height). Axes: x is RD, y is TD, z is ND, the "
          "direction\n"
          "of compression. An integer will do where a number is asked.\n\n" +

@@ -8,6 +8,7 @@
 #include "core/deck.hpp"
 #include "material/crystal_law.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/msh_reader.hpp"
 #include "mesh/tessellation.hpp"
 #include "remap/remesh.hpp"
 #include "solver/options.hpp"
@@ -16,9 +17,18 @@ namespace polyslip::drivers {
 
 /// What a deck asks for in [orientations].
 struct OrientationOptions {
-  std::string distribution = "uniform";   ///< "uniform" or "file"
+  std::string distribution = "uniform";   ///< "uniform", "file" or "input"
   std::optional<std::string> file;        ///< path to open; set if and only if "file"
   std::string convention = "quaternion";  ///< "quaternion", "rodrigues" or "euler-bunge"
+};
+
+/// A polycrystal or a mesh made elsewhere; at most one of them.
+struct InputOptions {
+  std::optional<std::string> tessellation;  ///< path of a .tess file, [polycrystal] file
+  std::optional<std::string> mesh;          ///< path of a .msh file, [mesh] file
+  mesh::LengthUnit length_unit = mesh::LengthUnit::grain;
+
+  bool any() const { return tessellation || mesh; }
 };
 
 /// What a deck asks for in [output].
@@ -28,7 +38,8 @@ struct OutputOptions {
 };
 
 struct Options {
-  mesh::PolycrystalOptions polycrystal;
+  InputOptions input;
+  mesh::PolycrystalOptions polycrystal;  ///< of a file: the seed alone counts
   mesh::RegularisationOptions regularisation;
   mesh::MeshingOptions mesh;
   OrientationOptions orientations;

@@ -17,19 +17,33 @@ std::string with_place(const Deck& deck, const std::string& section, const std::
   return fmt::format("{} = {} ({})", key, value, place);
 }
 
+void check_file(Deck& deck, const char* section, const std::string& path) {
+  if (!std::filesystem::exists(path))
+    deck.fault(section, "file", fmt::format("{}: no such file", path));
+  else if (!std::filesystem::is_regular_file(path))
+    deck.fault(section, "file", fmt::format("{}: is not a file", path));
+}
+
 void check_orientations(Deck& deck, const OrientationOptions& o) {
   const char* section = "orientations";
-  if (o.distribution == "uniform" && o.file)
+  if (o.distribution != "file" && o.file)
     deck.fault(section, "file",
-               "file is not used with distribution = \"uniform\"; remove it, or set distribution = "
-               "\"file\"");
+               fmt::format("file is not used with distribution = \"{}\"; remove it, or set "
+                           "distribution = \"file\"",
+                           o.distribution));
   if (o.distribution != "file") return;
   if (!o.file)
     deck.fault(section, "distribution", "distribution = \"file\" needs the key file");
-  else if (!std::filesystem::exists(*o.file))
-    deck.fault(section, "file", fmt::format("{}: no such file", *o.file));
-  else if (!std::filesystem::is_regular_file(*o.file))
-    deck.fault(section, "file", fmt::format("{}: is not a file", *o.file));
+  else
+    check_file(deck, section, *o.file);
+}
+
+void check_input(Deck& deck, const Options& o) {
+  if (o.input.tessellation) check_file(deck, "polycrystal", *o.input.tessellation);
+  if (o.input.mesh) check_file(deck, "mesh", *o.input.mesh);
+  if (o.orientations.distribution == "input" && !o.input.any())
+    deck.fault("orientations", "distribution",
+               "distribution = \"input\" needs a file in [polycrystal] or [mesh]");
 }
 
 void check_material(Deck& deck, const material::MaterialOptions& o) {
@@ -76,6 +90,7 @@ void check_strains(Deck& deck, const Options& o) {
 }  // namespace
 
 void check_options(Deck& deck, const Options& options, Purpose purpose) {
+  check_input(deck, options);
   check_orientations(deck, options.orientations);
   check_material(deck, options.material);
   check_loading(deck, options.loading);

@@ -14,7 +14,6 @@
 #include "drivers/generate.hpp"
 #include "drivers/on_root.hpp"
 #include "drivers/options.hpp"
-#include "drivers/orientations.hpp"
 #include "drivers/run_progress.hpp"
 #include "drivers/run_report.hpp"
 #include "drivers/schedule.hpp"
@@ -78,7 +77,7 @@ class Run {
   double strain_start_ = 0;
   std::string deck_text_, resolved_, fingerprint_;
   Options options_;
-  std::vector<core::Quaternion> orientations_;
+  Input input_;  ///< of a run that begins; on rank 0
   std::vector<Event> events_;
   std::unique_ptr<material::CrystalLaw> law_;
   std::unique_ptr<solver::Model> model_;
@@ -119,7 +118,7 @@ void Run::read_deck() {
                              request_.folder);
     text = core::read_text(file);
     understand();
-    orientations_ = grain_orientations(options_);
+    if (!request_.restart) input_ = read_input(options_);
     deck_text_ = request_.restart ? core::read_text(path(results::deck_name)) : text;
   });
   broadcast(comm_, text);
@@ -138,18 +137,21 @@ void Run::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& 
 }
 
 mesh::Snapshot Run::begin_anew() {
-  if (request_.restart) require_unedited_deck(request_.folder);
+  if (request_.restart) {
+    require_unedited_deck(request_.folder);
+    input_ = read_input(options_);
+  }
   results::prepare_run_folder(request_.folder, request_.overwrite || request_.restart,
                               request_.restart);
   if (!request_.restart) write_decks(request_.folder, deck_text_, resolved_);
   log_.to_file(path(results::log_name));
   log_.info("polyslip {}: {}", core::version(), request_.folder);
   if (request_.restart) log_.warning("{}: no checkpoint yet; starting over", request_.folder);
-  mesh::Mesh mesh = generate_polycrystal(options_, request_.folder, pool_, log_, times_);
+  mesh::Mesh mesh = generate_polycrystal(options_, input_, request_.folder, pool_, log_, times_);
   progress_.elements_initial = mesh.element_count();
   macro_ = results::MacroCsv::create(path(results::macro_name));
   states_.emplace(request_.folder);
-  return solver::initial_snapshot(std::move(mesh), orientations_, *law_);
+  return solver::initial_snapshot(std::move(mesh), input_.orientations, *law_);
 }
 
 mesh::Snapshot Run::take_up(const results::CheckpointFile& file) {
