@@ -124,6 +124,7 @@ max_flatness_fault = 10
 polyline_share = 0
 polyline_angle = 5
 [mesh]
+length_unit = "file"
 element_size = 0.3
 progression_factor = 1.5
 meshers = ["netgen"]
@@ -164,6 +165,7 @@ checkpoint_every_strain = 0
 TEST(Options, EveryKeyReachesItsOption) {
   core::Deck deck = core::Deck::from_text(other_values, "deck.toml");
   const Options o = read_options(deck);
+  EXPECT_EQ(o.input.length_unit, mesh::LengthUnit::file);
   EXPECT_EQ(o.polycrystal.grains, 31);
   EXPECT_EQ(o.polycrystal.seed, 9223372036854775807u);
   EXPECT_EQ(o.polycrystal.domain, core::Vec3(1, 2, 3));
