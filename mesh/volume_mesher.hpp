@@ -10,7 +10,8 @@
 
 namespace polyslip::mesh {
 
-/// Names that a deck may list: Gmsh's HXT and Delaunay, Netgen; each with its optimiser and Gmsh's.
+/// Names that a deck may list: Gmsh's HXT and Delaunay, Netgen; each with its optimiser, Gmsh's and
+/// ours (mesh/tetrahedral_optimiser.hpp).
 inline const std::array<std::string, 3> known_meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
 
 /// Closed surface, outward normals, no unused nodes.

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "mesh/mesher_protocol.hpp"
+#include "mesh/tetrahedral_optimiser.hpp"
 #include "mesh/worker/fault_injection.hpp"
 #include "mesh/worker/mesher.hpp"
 
@@ -56,7 +57,7 @@ void limit_grain(double seconds) {
   alarm(static_cast<unsigned>(60 + 20 * seconds));
 }
 
-/// Meshes one grain and sends it; the reason if there is no mesh.
+/// Meshes one grain, optimises its inside and sends it; the reason if there is no mesh.
 std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64_t index,
                        const FaultInjection& faults, int socket) {
   const GrainRequest& grain = batch.grains[index];
@@ -66,6 +67,7 @@ std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64
     VolumeMesh mesh = mesher.fill(grain.surface, batch.element_size);
     std::string fault = validate(grain.surface, mesh);
     if (!fault.empty()) return fault;
+    if (!faults.unoptimised(batch.mesher, grain.grain)) mesh = optimise_inside(grain.surface, mesh);
     faults.after(batch.mesher, grain.grain, mesh, socket);
     if (!protocol::send_all(socket, protocol::encode_mesh(index, mesh))) end(false);
     return {};

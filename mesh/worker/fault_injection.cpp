@@ -48,6 +48,10 @@ void FaultInjection::before(const std::string& mesher, int grain) const {
     }
 }
 
+bool FaultInjection::unoptimised(const std::string& mesher, int grain) const {
+  return asked(mesher, grain, "unoptimised");
+}
+
 void FaultInjection::after(const std::string& mesher, int grain, VolumeMesh& mesh,
                            int socket) const {
   if (asked(mesher, grain, "nan")) mesh.nodes.back().x() = std::numeric_limits<double>::quiet_NaN();

@@ -12,7 +12,8 @@ namespace polyslip::mesh::worker {
 /// that mesher fail on that grain. Kinds: `crash` (segmentation fault), `hang` (an endless loop),
 /// `throw` (an exception), `nan` (a node that is not a number, unseen by the mesher process),
 /// `garbage` (an answer that is no message). An entry that cannot be read is ignored.
-/// "fork:N:refuse" makes the first N forks of the server fail.
+/// `unoptimised` is no fault: our own optimiser is left out. "fork:N:refuse" makes the first N
+/// forks of the server fail.
 class FaultInjection {
  public:
   static FaultInjection from_environment();
@@ -20,6 +21,8 @@ class FaultInjection {
   int refused_forks() const;
   /// Before the mesher: crash, hang, throw.
   void before(const std::string& mesher, int grain) const;
+  /// Our own optimiser is left out for this grain.
+  bool unoptimised(const std::string& mesher, int grain) const;
   /// After the mesher's mesh was found valid: nan, garbage (written to the socket).
   void after(const std::string& mesher, int grain, VolumeMesh& mesh, int socket) const;
 
