@@ -121,14 +121,15 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
   return maximum(local_.comm, bad) != 0 ? Evaluation::not_finite : Evaluation::fine;
 }
 
-PointVolumeSpring Discretisation::spring(std::size_t e, const ElementGeometry& geometry) const {
-  return point_volume_spring(geometry, &step_ratio_[element_points * e], kappa_);
+PointVolumeResistance Discretisation::resistance(std::size_t e,
+                                                 const ElementGeometry& geometry) const {
+  return point_volume_resistance(geometry, &step_ratio_[element_points * e], kappa_);
 }
 
 void Discretisation::add_point_volumes(std::size_t e) {
   ElementGeometry geometry;
   element_geometry(positions(static_cast<int>(e), x_), geometry);
-  const auto p = spring_mean_stress(spring(e, geometry), geometry);
+  const auto p = resistance_mean_stress(resistance(e, geometry), geometry);
   for (std::size_t q = 0; q < element_points; ++q) mean_stress_[e][q] += p[q];
 }
 
@@ -203,7 +204,7 @@ void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>
   const double* tangent = &tangent_[e * 54 * element_points];
   element_tangent(geometry, &stress_[e * 6 * element_points], tangent, mean_stress_[e],
                   mixed_ ? 0 : bulk_, matrix);
-  if (mixed_) add_spring_tangent(spring(e, geometry), geometry, matrix);
+  if (mixed_) add_resistance_tangent(resistance(e, geometry), geometry, matrix);
   element_volume_gradient(geometry, b);
   const double modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
   scales.modulus = modulus;

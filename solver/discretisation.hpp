@@ -101,8 +101,8 @@ class Discretisation {
   std::vector<ElementScales> scales_;
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
-  PointVolumeSpring spring(std::size_t element, const ElementGeometry& geometry) const;
-  /// Adds the spring's mean stresses to those of the element's points.
+  PointVolumeResistance resistance(std::size_t element, const ElementGeometry& geometry) const;
+  /// Adds the resistance's mean stresses to those of the element's points.
   void add_point_volumes(std::size_t element);
   Evaluation kinematics(const Configuration& old);
   Evaluation update_material(const Configuration& old, double time_step);

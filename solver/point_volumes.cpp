@@ -25,53 +25,53 @@ double point_volume_modulus(double von_mises_stress, double strain_increment,
                   point_volume_limit * shear_modulus);
 }
 
-PointVolumeSpring point_volume_spring(const ElementGeometry& geometry, const double* volume_ratio,
-                                      double kappa) {
-  PointVolumeSpring spring;
-  spring.kappa = kappa;
+PointVolumeResistance point_volume_resistance(const ElementGeometry& geometry,
+                                              const double* volume_ratio, double kappa) {
+  PointVolumeResistance resistance;
+  resistance.kappa = kappa;
   double start = 0;  // V_n
   for (int q = 0; q < element_points; ++q) {
-    spring.reference[q] = geometry.weights[q] / volume_ratio[q];
-    start += spring.reference[q];
+    resistance.reference[q] = geometry.weights[q] / volume_ratio[q];
+    start += resistance.reference[q];
   }
   const double whole = std::log(geometry.volume / start);
   for (int q = 0; q < element_points; ++q) {
-    spring.s[q] = std::log(volume_ratio[q]) - whole;
-    spring.sum += spring.reference[q] * spring.s[q];
+    resistance.s[q] = std::log(volume_ratio[q]) - whole;
+    resistance.sum += resistance.reference[q] * resistance.s[q];
   }
-  return spring;
+  return resistance;
 }
 
-std::array<double, element_points> spring_mean_stress(const PointVolumeSpring& spring,
-                                                      const ElementGeometry& geometry) {
+std::array<double, element_points> resistance_mean_stress(const PointVolumeResistance& resistance,
+                                                          const ElementGeometry& geometry) {
   std::array<double, element_points> p{};
   for (int q = 0; q < element_points; ++q)
-    p[q] = spring.kappa *
-           (spring.reference[q] * spring.s[q] / geometry.weights[q] - spring.sum / geometry.volume);
+    p[q] = resistance.kappa * (resistance.reference[q] * resistance.s[q] / geometry.weights[q] -
+                               resistance.sum / geometry.volume);
   return p;
 }
 
-void add_spring_tangent(const PointVolumeSpring& spring, const ElementGeometry& geometry,
-                        ElementMatrix& matrix) {
+void add_resistance_tangent(const PointVolumeResistance& resistance,
+                            const ElementGeometry& geometry, ElementMatrix& matrix) {
   std::array<Gradient, element_points> g;
   Gradient mean{}, weighted{};  // G, sum W g
   double reference = 0;         // sum W
   for (int q = 0; q < element_points; ++q) {
     g[q] = divergence(geometry, q);
-    reference += spring.reference[q];
+    reference += resistance.reference[q];
     for (int i = 0; i < dofs; ++i) {
       mean[i] += geometry.weights[q] / geometry.volume * g[q][i];
-      weighted[i] += spring.reference[q] * g[q][i];
+      weighted[i] += resistance.reference[q] * g[q][i];
     }
   }
   double* out = &matrix[0][0][0][0];
   for (int row = 0; row < dofs; ++row)
     for (int c = 0; c < dofs; ++c) {
-      double sum = (reference + spring.sum) * mean[row] * mean[c] - weighted[row] * mean[c] -
+      double sum = (reference + resistance.sum) * mean[row] * mean[c] - weighted[row] * mean[c] -
                    mean[row] * weighted[c];
       for (int q = 0; q < element_points; ++q)
-        sum += spring.reference[q] * (1 - spring.s[q]) * g[q][row] * g[q][c];
-      out[dofs * row + c] += spring.kappa * sum;
+        sum += resistance.reference[q] * (1 - resistance.s[q]) * g[q][row] * g[q][c];
+      out[dofs * row + c] += resistance.kappa * sum;
     }
 }
 

@@ -26,7 +26,7 @@ inline constexpr double point_volume_limit = 0.2;
 /// kappa [MPa] of a step: von Mises stress of the body before it [MPa], its strain increment.
 double point_volume_modulus(double von_mises_stress, double strain_increment, double shear_modulus);
 
-struct PointVolumeSpring {
+struct PointVolumeResistance {
   double kappa = 0;                                ///< MPa
   std::array<double, element_points> reference{};  ///< W_q [length^3]
   std::array<double, element_points> s{};          ///< s_q
@@ -34,19 +34,19 @@ struct PointVolumeSpring {
 };
 
 /// volume_ratio[q]: J_q over the step.
-PointVolumeSpring point_volume_spring(const ElementGeometry& geometry, const double* volume_ratio,
-                                      double kappa);
+PointVolumeResistance point_volume_resistance(const ElementGeometry& geometry,
+                                              const double* volume_ratio, double kappa);
 
-/// The mean stress that the spring adds at each point [MPa], from dU = sum_q w_q p_q div(du)_q:
+/// The mean stress that the resistance adds at each point [MPa], from dU = sum_q w_q p_q div(du)_q:
 ///   p_q = kappa (W_q s_q / w_q - sum_r W_r s_r / V); its mean over the element is zero.
-std::array<double, element_points> spring_mean_stress(const PointVolumeSpring& spring,
-                                                      const ElementGeometry& geometry);
+std::array<double, element_points> resistance_mean_stress(const PointVolumeResistance& resistance,
+                                                          const ElementGeometry& geometry);
 
 /// Adds what the change of these mean stresses gives to the tangent; element_tangent has the part
 /// at constant mean stress. With g_q = d(div u)_q/du (30 numbers) and G = sum_q w_q g_q / V:
 ///   kappa [sum_q W_q (1 - s_q) g_q g_q^T - (sum W g) G^T - G (sum W g)^T + (sum W + sum W s) G
 ///   G^T]
-void add_spring_tangent(const PointVolumeSpring& spring, const ElementGeometry& geometry,
-                        ElementMatrix& matrix);
+void add_resistance_tangent(const PointVolumeResistance& resistance,
+                            const ElementGeometry& geometry, ElementMatrix& matrix);
 
 }  // namespace polyslip::solver

@@ -27,9 +27,9 @@ ElementPositions moved(ElementPositions x, double amount) {
   return x;
 }
 
-/// The spring and its forces at positions x, for a body whose points had their volumes at x0.
+/// The resistance and its forces at positions x, for a body whose points had their volumes at x0.
 struct Response {
-  PointVolumeSpring spring;
+  PointVolumeResistance resistance;
   std::array<double, element_points> p{};
   ElementGeometry geometry;
   ElementForces forces{};
@@ -42,17 +42,17 @@ Response response(const ElementPositions& x0, const ElementPositions& x, double 
   EXPECT_TRUE(element_geometry(x, r.geometry));
   std::array<double, element_points> ratio{};
   for (int q = 0; q < element_points; ++q) ratio[q] = r.geometry.weights[q] / before.weights[q];
-  r.spring = point_volume_spring(r.geometry, ratio.data(), kappa);
-  r.p = spring_mean_stress(r.spring, r.geometry);
+  r.resistance = point_volume_resistance(r.geometry, ratio.data(), kappa);
+  r.p = resistance_mean_stress(r.resistance, r.geometry);
   const std::array<double, 6 * element_points> no_stress{};
   element_forces(r.geometry, no_stress.data(), r.p, r.forces);
   return r;
 }
 
-double energy(const PointVolumeSpring& spring) {
+double energy(const PointVolumeResistance& resistance) {
   double u = 0;
   for (int q = 0; q < element_points; ++q)
-    u += spring.kappa / 2 * spring.reference[q] * spring.s[q] * spring.s[q];
+    u += resistance.kappa / 2 * resistance.reference[q] * resistance.s[q] * resistance.s[q];
   return u;
 }
 
@@ -91,9 +91,9 @@ TEST(PointVolumes, ForcesAreTheDerivativeOfTheEnergy) {
       ElementPositions plus = x, minus = x;
       plus[a][i] += step;
       minus[a][i] -= step;
-      const double slope =
-          (energy(response(x0, plus, 500).spring) - energy(response(x0, minus, 500).spring)) /
-          (2 * step);
+      const double slope = (energy(response(x0, plus, 500).resistance) -
+                            energy(response(x0, minus, 500).resistance)) /
+                           (2 * step);
       EXPECT_NEAR(r.forces[a][i], slope, 1e-6);
     }
 }
@@ -105,7 +105,7 @@ TEST(PointVolumes, TangentIsTheDerivativeOfTheForces) {
   const std::array<double, 6 * element_points> no_stress{};
   const std::array<double, 54 * element_points> no_tangent{};
   element_tangent(r.geometry, no_stress.data(), no_tangent.data(), r.p, 0, matrix);
-  add_spring_tangent(r.spring, r.geometry, matrix);
+  add_resistance_tangent(r.resistance, r.geometry, matrix);
   constexpr double step = 1e-6;
   for (int b = 0; b < element_nodes; ++b)
     for (int k = 0; k < 3; ++k) {
