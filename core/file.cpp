@@ -4,7 +4,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -16,6 +18,9 @@
 namespace polyslip::core {
 
 namespace {
+
+constexpr std::size_t buffer_size = 1 << 20;
+constexpr std::size_t longest_number = 32;
 
 using Descriptor = Handle<int, ::close, -1>;
 
@@ -29,9 +34,9 @@ InputError system_error(const std::string& path, const char* what, int code) {
   throw system_error(path, what, code);
 }
 
-void write_all(const Descriptor& file, const std::string& path, std::string_view content) {
+void write_all(int file, const std::string& path, std::string_view content) {
   while (!content.empty()) {
-    const ssize_t n = ::write(file.get(), content.data(), content.size());
+    const ssize_t n = ::write(file, content.data(), content.size());
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) drop_part(path, "cannot write", n < 0 ? errno : ENOSPC);
     content.remove_prefix(static_cast<std::size_t>(n));
@@ -65,9 +70,51 @@ void write_file(const std::string& path, std::string_view content) {
   const std::string part = part_path(path);
   Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (!file) throw system_error(path, "cannot write", errno);
-  write_all(file, path, content);
+  write_all(file.get(), path, content);
   if (file.close() != 0) drop_part(path, "cannot write", errno);
   publish_part(path);
+}
+
+FileWriter::FileWriter(std::string path) : path_(std::move(path)) {
+  file_ = ::open(part_path(path_).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file_ < 0) throw system_error(path_, "cannot write", errno);
+  buffer_.reserve(buffer_size + longest_number);
+}
+
+FileWriter::~FileWriter() {
+  if (file_ < 0) return;
+  ::close(file_);
+  ::unlink(part_path(path_).c_str());
+}
+
+void FileWriter::put(std::string_view text) {
+  buffer_ += text;
+  if (buffer_.size() >= buffer_size) flush();
+}
+
+void FileWriter::put(long number) {
+  std::array<char, longest_number> digits;
+  const auto end = std::to_chars(digits.begin(), digits.end(), number).ptr;
+  put(std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())));
+}
+
+void FileWriter::put(double number) {
+  std::array<char, longest_number> digits;
+  const auto end = std::to_chars(digits.begin(), digits.end(), number).ptr;
+  put(std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())));
+}
+
+void FileWriter::flush() {
+  write_all(file_, path_, buffer_);
+  buffer_.clear();
+}
+
+void FileWriter::finish() {
+  flush();
+  const int file = file_;
+  file_ = -1;
+  if (::close(file) != 0) drop_part(path_, "cannot write", errno);
+  publish_part(path_);
 }
 
 std::string read_text(const std::string& path) {

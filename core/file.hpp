@@ -1,6 +1,7 @@
 #pragma once
 // Files that are either whole or not there.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,32 @@ void publish_part(const std::string& path);
 
 /// Writes `content` to `path`, atomically, as above. A full disk is an InputError.
 void write_file(const std::string& path, std::string_view content);
+
+/// A file written piece by piece, for what is too large to be held as one text. It is built at
+/// part_path(path) and gets its name by `finish`; without that, or after an error, nothing is left
+/// of it. Errors as those of write_file.
+class FileWriter {
+ public:
+  explicit FileWriter(std::string path);
+  ~FileWriter();
+  FileWriter(const FileWriter&) = delete;
+  FileWriter& operator=(const FileWriter&) = delete;
+
+  void put(std::string_view text);
+  void put(char c) { put(std::string_view(&c, 1)); }
+  void put(long number);
+  void put(int number) { put(static_cast<long>(number)); }
+  void put(std::size_t number) { put(static_cast<long>(number)); }
+  /// The shortest text that reads back as the same number.
+  void put(double number);
+  void finish();
+
+ private:
+  void flush();
+
+  std::string path_, buffer_;
+  int file_ = -1;
+};
 
 /// The whole file. InputError "<path>: no such file" or with the system's reason.
 std::string read_text(const std::string& path);

@@ -75,6 +75,44 @@ TEST_F(File, AFailedWriteKeepsTheOldFile) {
   EXPECT_FALSE(fs::exists(part_path(path("a"))));
 }
 
+TEST_F(File, APieceByPieceFileIsTheSameText) {
+  std::string expected;
+  {
+    FileWriter writer(path("a"));
+    for (int i = 0; i < 300'000; ++i) {
+      writer.put(i);
+      writer.put(' ');
+      expected += std::to_string(i) + " ";
+    }
+    writer.put(0.1);
+    writer.put("\n");
+    EXPECT_FALSE(fs::exists(path("a")));
+    writer.finish();
+  }
+  EXPECT_EQ(read_text(path("a")), expected + "0.1\n");
+  EXPECT_FALSE(fs::exists(part_path(path("a"))));
+  { FileWriter(path("a")).put("never finished"); }
+  EXPECT_EQ(read_text(path("a")), expected + "0.1\n");
+  EXPECT_FALSE(fs::exists(part_path(path("a"))));
+}
+
+TEST_F(File, AFullDiskLeavesNothingOfAPieceByPieceFile) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  auto* handler = ::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1 << 20, before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &small);
+  const std::string error = error_of([&] {
+    FileWriter writer(path("a"));
+    for (int i = 0; i < 1'000'000; ++i) writer.put(i);
+    writer.finish();
+  });
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_EQ(error, path("a") + ": cannot write: File too large");
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
 TEST_F(File, PublishNeedsThePart) {
   EXPECT_EQ(error_of([&] { publish_part(path("h5")); }),
             part_path(path("h5")) + ": cannot open: No such file or directory");
