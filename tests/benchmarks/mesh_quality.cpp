@@ -1,0 +1,157 @@
+// Cost and quality of meshes (docs/benchmarks.md): the paper's table 1, or one case of it.
+// mesh_quality --help
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+
+#include "core/timer.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/pipeline.hpp"
+
+namespace {
+
+using namespace polyslip;
+
+struct Case {
+  int grains = 1000;
+  double element_size = 0.25;
+};
+
+struct Options {
+  std::string worker = POLYSLIP_BINARY_DIR "/polyslip-mesher";
+  std::vector<int> grains{100, 300, 1000};
+  std::vector<double> element_sizes{0.5, 0.25};
+  std::uint64_t seed = 1;
+  mesh::RegularisationOptions regularisation;
+  mesh::MeshingOptions meshing;
+  std::string csv;
+};
+
+/// Figures of one case; CPU in ms a grain.
+struct Figures {
+  int elements = 0, nodes = 0, below_005 = 0, below_01 = 0;
+  double tessellation = 0, regularisation = 0, meshing = 0, workers = 0;
+  double worst = std::numeric_limits<double>::infinity(), mean = 0, mean_worst = 0, mean_O = 0;
+  double wall = 0, peak_mb = 0;
+  std::string wins;
+};
+
+double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+/// Radius ratios of the straight elements, by element and by grain.
+void measure_elements(const mesh::Mesh& mesh, double element_size, Figures& figures) {
+  const int grains = mesh.topology.cell_count();
+  std::vector<mesh::VolumeMesh> parts(1);
+  std::size_t e = 0;
+  for (int grain = 0; grain < grains; ++grain) {
+    mesh::VolumeMesh part;
+    double worst = std::numeric_limits<double>::infinity();
+    for (; e < mesh.tetrahedra.size() && mesh.tetrahedron_cell[e] == grain; ++e) {
+      const int first = static_cast<int>(part.nodes.size());
+      for (int i = 0; i < 4; ++i) part.nodes.push_back(mesh.nodes[mesh.tetrahedra[e][i]]);
+      part.tetrahedra.push_back({first, first + 1, first + 2, first + 3});
+      const double rho = mesh::radius_ratio(part.nodes[first], part.nodes[first + 1],
+                                            part.nodes[first + 2], part.nodes[first + 3]);
+      figures.mean += rho / mesh.element_count();
+      figures.below_005 += !(rho >= 0.05);
+      figures.below_01 += !(rho >= 0.1);
+      worst = std::min(worst, rho);
+    }
+    figures.worst = std::min(figures.worst, worst);
+    figures.mean_worst += worst / grains;
+    figures.mean_O += mesh::mesh_quality_O(part, element_size) / grains;
+  }
+}
+
+Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) {
+  Figures f;
+  mesh::PolycrystalOptions polycrystal;
+  polycrystal.grains = wanted.grains;
+  polycrystal.seed = options.seed;
+  const double wall = core::wall_seconds();
+  double start = cpu_ms();
+  auto tessellation = mesh::voronoi_tessellation(polycrystal);
+  f.tessellation = (cpu_ms() - start) / wanted.grains;
+  start = cpu_ms();
+  mesh::regularise(tessellation, options.regularisation);
+  f.regularisation = (cpu_ms() - start) / wanted.grains;
+  start = cpu_ms();
+  const double before = pool.cpu_seconds();
+  mesh::MeshingOptions meshing = options.meshing;
+  meshing.element_size = wanted.element_size;
+  mesh::MeshingReport report;
+  const auto mesh = mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing,
+                                        core::Vec3::Ones(), pool, report);
+  f.workers = 1e3 * (pool.cpu_seconds() - before) / wanted.grains;
+  f.meshing = (cpu_ms() - start) / wanted.grains + f.workers;
+  f.wall = core::wall_seconds() - wall;
+  f.elements = mesh.element_count();
+  f.nodes = mesh.node_count();
+  f.peak_mb = core::peak_rss_mb();
+  measure_elements(mesh, wanted.element_size, f);
+  for (std::size_t i = 0; i < report.wins.size(); ++i)
+    f.wins += fmt::format("{}{} {}", i ? ", " : "", meshing.meshers[i], report.wins[i]);
+  return f;
+}
+
+double per_100k(int count, const Figures& f) { return 1e5 * count / f.elements; }
+
+void print(const Case& c, const Figures& f) {
+  fmt::print(
+      "{:6d} {:5.2f} | {:9d} {:9d} | {:5.2f} {:5.2f} {:6.2f} {:6.2f} | {:.4f} {:.4f} {:6.2f} "
+      "{:6.2f} {:.4f} {:.4f} | {:6.1f} {:6.0f} | {}\n",
+      c.grains, c.element_size, f.elements, f.nodes, f.tessellation, f.regularisation, f.meshing,
+      f.workers, f.worst, f.mean, per_100k(f.below_005, f), per_100k(f.below_01, f), f.mean_worst,
+      f.mean_O, f.wall, f.peak_mb, f.wins);
+  std::fflush(stdout);
+}
+
+void write_csv(const std::string& path, const std::vector<std::pair<Case, Figures>>& rows) {
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (!file) return;
+  fmt::print(file,
+             "grains,c_l,elements,nodes,tessellation_ms_a_grain,regularisation_ms_a_grain,meshing_"
+             "ms_a_grain,of_it_workers_ms_a_grain,worst_radius_ratio,mean_radius_ratio,below_0.05_"
+             "per_100000,below_0.1_per_100000,mean_worst_of_grain,mean_O,wall_s,peak_MB\n");
+  for (const auto& [c, f] : rows)
+    fmt::print(file, "{},{},{},{},{:.4g},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{:.4g},{:.5g},"
+               "{:.5g},{:.4g},{:.5g}\n",
+               c.grains, c.element_size, f.elements, f.nodes, f.tessellation, f.regularisation,
+               f.meshing, f.workers, f.worst, f.mean, per_100k(f.below_005, f),
+               per_100k(f.below_01, f), f.mean_worst, f.mean_O, f.wall, f.peak_mb);
+  std::fclose(file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("CPU seconds and element quality of the paper's table 1");
+  app.add_option("--worker", options.worker, "polyslip-mesher");
+  app.add_option("--grains", options.grains)->delimiter(',');
+  app.add_option("--element-size", options.element_sizes, "c_l")->delimiter(',');
+  app.add_option("--seed", options.seed);
+  app.add_option("--max-edge-length", options.regularisation.max_edge_length, "l_max");
+  app.add_option("--progression", options.meshing.progression_factor, "p_l");
+  app.add_option("--meshers", options.meshing.meshers)->delimiter(',');
+  app.add_option("--jobs", options.meshing.jobs);
+  app.add_option("--csv", options.csv, "file for the table");
+  CLI11_PARSE(app, argc, argv);
+  const auto pool = mesh::MesherPool::start(options.worker);
+  fmt::print(
+      "grains   c_l |  elements     nodes |  CPU ms a grain: tess. reg. meshing (workers) | radius "
+      "ratio: worst mean, < 0.05 and < 0.1 per 1e5, mean worst of grain; O | wall s, MB | wins\n");
+  std::vector<std::pair<Case, Figures>> rows;
+  for (const double element_size : options.element_sizes)
+    for (const int grains : options.grains) {
+      const Case wanted{grains, element_size};
+      rows.emplace_back(wanted, run(wanted, options, *pool));
+      print(rows.back().first, rows.back().second);
+    }
+  if (!options.csv.empty()) write_csv(options.csv, rows);
+}
