@@ -114,14 +114,35 @@ bool BoundaryMesher::copy(int face) {
 void BoundaryMesher::mesh_edge(int edge) {
   const auto& ends = geometry_.topology.edges[edge].vertices;
   const CurvedEdge curve(geometry_.edges[edge], scale_);
-  const auto s = edge_nodes(curve.length(), vertex_sizes_[ends[0]], vertex_sizes_[ends[1]],
-                            options_.element_size, options_.progression_factor);
+  place_edge(edge, edge_nodes(curve.length(), vertex_sizes_[ends[0]], vertex_sizes_[ends[1]],
+                              options_.element_size, options_.progression_factor));
+}
+
+Vec3 BoundaryMesher::edge_point(int edge, const CurvedEdge& curve, double arc) const {
+  Vec3 x = curve.at(arc);
+  keep_in_planes(x, edge_planes_[edge]);
+  return x;
+}
+
+void BoundaryMesher::place_edge(int edge, std::vector<double> arcs) {
+  const CurvedEdge curve(geometry_.edges[edge], scale_);
   EdgeMesh& m = edges_[edge];
   m = {};
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    m.nodes.push_back(curve.at(s[i]));
-    if (i > 0) m.mids.push_back(curve.at((s[i - 1] + s[i]) / 2));
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    m.nodes.push_back(curve.at(arcs[i]));
+    if (i > 0) m.mids.push_back(curve.at((arcs[i - 1] + arcs[i]) / 2));
   }
+  m.arcs = std::move(arcs);
+  finish_edge(edge);
+}
+
+/// Its nodes in their planes, its ends on the vertices.
+void BoundaryMesher::finish_edge(int edge) {
+  EdgeMesh& m = edges_[edge];
+  for (auto& x : m.nodes) keep_in_planes(x, edge_planes_[edge]);
+  for (auto& x : m.mids) keep_in_planes(x, edge_planes_[edge]);
+  m.nodes.front() = vertices_[geometry_.topology.edges[edge].vertices[0]];
+  m.nodes.back() = vertices_[geometry_.topology.edges[edge].vertices[1]];
 }
 
 void BoundaryMesher::copy_edge(int edge) {
@@ -130,6 +151,7 @@ void BoundaryMesher::copy_edge(int edge) {
   m = {};
   for (std::size_t i = 0; i < points.size(); ++i)
     (i % 2 == 0 ? m.nodes : m.mids).push_back(points[i]);
+  finish_edge(edge);
 }
 
 BoundaryNumbers BoundaryMesher::numbers() const {
@@ -217,30 +239,63 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
     if (domain >= 0) keep_in_planes(x, 1u << domain);
     return x;
   };
-  double beyond = 0, farthest = 0;
-  const auto count_beyond = [&] {
-    result.nearest_points += beyond > 0;
-    farthest = std::max(farthest, beyond);
-  };
+  double farthest = 0;
   std::vector<Vec3> x;
   result.boundary_count = static_cast<int>(problem.boundary.size());
   for (int n : boundary_nodes) x.push_back(positions[n]);
   for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i) {
+    double beyond = 0;
     x.push_back(in_plane(projection.lift(plane.points[i], &beyond)));
-    count_beyond();
+    result.nearest_points += beyond > 0;
+    farthest = std::max(farthest, beyond);
     result.inner_nodes.push_back(x.back());
   }
   result.triangles = plane.triangles;
-  for (const auto& [a, b, t, i] : inner_edges(plane.triangles)) {
-    const Eigen::Vector2d above = (plane.points[a] + plane.points[b]) / 2;
-    result.inner_edges.push_back(
-        {a, b, in_plane(projection.nearest((x[a] + x[b]) / 2, above, &beyond))});
-    count_beyond();
-  }
+  for (const auto& [a, b, t, i] : inner_edges(plane.triangles))
+    result.inner_edges.push_back({a, b, Vec3::Zero()});
+  farthest = std::max(farthest, place_mids(face, projection, x));
   if (!(farthest <= farthest_beyond * projection.extent()))
     return fmt::format("a node of its mesh is {:.3g} beyond its old surface, of {:.3g} extent",
                        farthest, projection.extent());
   return {};
+}
+
+double BoundaryMesher::place_mids(int face, const FaceProjection& projection,
+                                  const std::vector<Vec3>& x) {
+  const int domain = geometry_.topology.faces[face].domain_face;
+  double farthest = 0;
+  for (auto& e : faces_[face].inner_edges) {
+    const Vec3 middle = (x[e.a] + x[e.b]) / 2;
+    double beyond = 0;
+    e.mid = projection.nearest(middle, projection.project(middle), &beyond);
+    if (domain >= 0) keep_in_planes(e.mid, 1u << domain);
+    faces_[face].nearest_points += beyond > 0;
+    farthest = std::max(farthest, beyond);
+  }
+  return farthest;
+}
+
+std::optional<Vec3> BoundaryMesher::face_point(int face, const FaceProjection& projection,
+                                               const Vec3& target) const {
+  double beyond = 0;
+  Vec3 x = projection.lift(projection.project(target), &beyond);
+  if (!(beyond <= 0)) return std::nullopt;
+  const int domain = geometry_.topology.faces[face].domain_face;
+  if (domain >= 0) keep_in_planes(x, 1u << domain);
+  return x;
+}
+
+void BoundaryMesher::place_face(int face, std::vector<Vec3> inner_nodes,
+                                const std::vector<Vec3>& positions,
+                                const BoundaryNumbers& numbers) {
+  const FaceProjection projection(geometry_.faces[face], scale_);
+  FaceMesh& m = faces_[face];
+  std::vector<Vec3> x;
+  for (const int n : face_nodes(face, numbers)) x.push_back(positions[n]);
+  std::copy(inner_nodes.begin(), inner_nodes.end(), x.end() - std::ssize(inner_nodes));
+  m.inner_nodes = std::move(inner_nodes);
+  m.nearest_points = 0;
+  place_mids(face, projection, x);
 }
 
 void BoundaryMesher::copy_face_mesh(int face) {
@@ -286,10 +341,6 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
       if (!edge_stale_[e]) continue;
       const int edge = static_cast<int>(e);
       edge_copied_[e] ? copy_edge(edge) : mesh_edge(edge);
-      for (auto& x : edges_[e].nodes) keep_in_planes(x, edge_planes_[e]);
-      for (auto& x : edges_[e].mids) keep_in_planes(x, edge_planes_[e]);
-      edges_[e].nodes.front() = vertices_[geometry_.topology.edges[e].vertices[0]];
-      edges_[e].nodes.back() = vertices_[geometry_.topology.edges[e].vertices[1]];
     }
     for (std::size_t f = 0; f < faces.size(); ++f)
       if (std::any_of(faces[f].edges.begin(), faces[f].edges.end(),

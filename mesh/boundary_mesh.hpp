@@ -9,19 +9,22 @@
 
 #include "core/types.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/projection.hpp"
+#include "mesh/size_field.hpp"
 
 namespace polyslip::mesh {
 
 struct EdgeMesh {
   std::vector<core::Vec3> nodes;  ///< from vertex 0 to vertex 1, both included
   std::vector<core::Vec3> mids;   ///< one an element
+  std::vector<double> arcs;       ///< arc lengths of the nodes (CurvedEdge); none if copied
 };
 
 /// Local node numbers: those on the boundary in the order of the face's loop, then inner ones.
 struct FaceMesh {
   struct InnerEdge {
     int a = 0, b = 0;  ///< a < b
-    core::Vec3 mid;
+    core::Vec3 mid = core::Vec3::Zero();
   };
   int boundary_count = 0;
   std::vector<core::Vec3> inner_nodes;
@@ -54,6 +57,20 @@ class BoundaryMesher {
   /// that cannot be meshed is copied; RecoverableError, naming it and why, if it cannot be.
   std::vector<int> update();
 
+  const Geometry& geometry() const { return geometry_; }
+  const core::Vec3& scale() const { return scale_; }
+  /// The point of an edge at an arc length, exactly in the planes that the edge lies in.
+  core::Vec3 edge_point(int edge, const CurvedEdge& curve, double arc) const;
+  /// The point of a face above the projection of `target`, exactly in its plane if it has one; none
+  /// beyond the face.
+  std::optional<core::Vec3> face_point(int face, const FaceProjection& projection,
+                                       const core::Vec3& target) const;
+  /// Moves the nodes of an edge that is not copied to these arc lengths.
+  void place_edge(int edge, std::vector<double> arcs);
+  /// Moves the inner nodes of a face that is not copied; `positions` of the other nodes, by number.
+  void place_face(int face, std::vector<core::Vec3> inner_nodes,
+                  const std::vector<core::Vec3>& positions, const BoundaryNumbers& numbers);
+
   const std::vector<core::Vec3>& vertices() const { return vertices_; }
   const std::vector<EdgeMesh>& edges() const { return edges_; }
   const std::vector<FaceMesh>& faces() const { return faces_; }
@@ -69,6 +86,9 @@ class BoundaryMesher {
   void find_planes();
   void keep_in_planes(core::Vec3& x, unsigned planes) const;
   void mesh_edge(int edge);
+  void finish_edge(int edge);
+  /// Mid nodes of the inner edges; how far the farthest lies beyond the old face.
+  double place_mids(int face, const FaceProjection& projection, const std::vector<core::Vec3>& x);
   void copy_edge(int edge);
   std::vector<double> node_sizes(const BoundaryNumbers& numbers) const;
   /// Why the face could not be meshed; empty if it was.

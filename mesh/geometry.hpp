@@ -48,7 +48,8 @@ struct MeshingOptions {
   int order = 2;
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
   double mesher_timeout = 60;  ///< seconds of CPU a grain and candidate
-  int jobs = 0;                ///< worker processes; 0: one a core
+  int jobs = 0;                ///< worker processes, and threads; 0: one a core
+  bool slide_boundary = true;  ///< nodes slide in faces and along edges after the grains are meshed
 };
 
 struct MeshingReport {

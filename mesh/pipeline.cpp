@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "mesh/assembly.hpp"
 #include "mesh/boundary_mesh.hpp"
+#include "mesh/boundary_sliding.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/volume_correction.hpp"
@@ -61,6 +63,9 @@ class Pipeline {
     tell(0.9);
     std::vector<VolumeMesh> volumes;
     for (auto& r : results_) volumes.push_back(std::move(r.mesh));
+    if (options_.slide_boundary)
+      slide_boundary(boundary_, volumes, options_.progression_factor,
+                     core::thread_count(options_.jobs));
     Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
     report_.straightened = mend_curved_elements(mesh);
     if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);

@@ -119,7 +119,8 @@ void write_csv(const std::string& path, const std::vector<std::pair<Case, Figure
              "ms_a_grain,of_it_workers_ms_a_grain,worst_radius_ratio,mean_radius_ratio,below_0.05_"
              "per_100000,below_0.1_per_100000,mean_worst_of_grain,mean_O,wall_s,peak_MB\n");
   for (const auto& [c, f] : rows)
-    fmt::print(file, "{},{},{},{},{:.4g},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{:.4g},{:.5g},"
+    fmt::print(file,
+               "{},{},{},{},{:.4g},{:.4g},{:.5g},{:.5g},{:.5g},{:.5g},{:.4g},{:.4g},{:.5g},"
                "{:.5g},{:.4g},{:.5g}\n",
                c.grains, c.element_size, f.elements, f.nodes, f.tessellation, f.regularisation,
                f.meshing, f.workers, f.worst, f.mean, per_100k(f.below_005, f),
@@ -139,6 +140,8 @@ int main(int argc, char** argv) {
   app.add_option("--max-edge-length", options.regularisation.max_edge_length, "l_max");
   app.add_option("--progression", options.meshing.progression_factor, "p_l");
   app.add_option("--meshers", options.meshing.meshers)->delimiter(',');
+  app.add_flag("--slide,!--no-slide", options.meshing.slide_boundary,
+               "nodes slide in faces and along edges");
   app.add_option("--jobs", options.meshing.jobs);
   app.add_option("--csv", options.csv, "file for the table");
   CLI11_PARSE(app, argc, argv);

@@ -1,0 +1,232 @@
+#include "mesh/boundary_sliding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/parallel.hpp"
+#include "mesh/assembly.hpp"
+#include "mesh/projection.hpp"
+#include "mesh/size_field.hpp"
+#include "mesh/star_mesh.hpp"
+#include "mesh/tetrahedral_optimiser.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+constexpr int rounds = 1;
+constexpr int sweeps = 3;
+constexpr int halvings = 5;
+constexpr double longest_step = 0.3;  // share of the least distance to a neighbour
+
+/// Parts (edges or faces) by colour: parts of a colour share none of the things that they touch.
+/// Each part takes the first colour that is free, in the order of the parts.
+std::vector<std::vector<int>> colours(const std::vector<std::vector<int>>& touched,
+                                      std::size_t thing_count) {
+  std::vector<std::vector<char>> used(thing_count);
+  std::vector<std::vector<int>> sets;
+  for (std::size_t part = 0; part < touched.size(); ++part) {
+    std::size_t colour = 0;
+    const auto taken = [&](int thing) {
+      return colour < used[thing].size() && used[thing][colour];
+    };
+    while (std::any_of(touched[part].begin(), touched[part].end(), taken)) ++colour;
+    for (const int thing : touched[part]) {
+      if (used[thing].size() <= colour) used[thing].resize(colour + 1, false);
+      used[thing][colour] = true;
+    }
+    if (colour == sets.size()) sets.emplace_back();
+    sets[colour].push_back(static_cast<int>(part));
+  }
+  return sets;
+}
+
+class BoundarySlider {
+ public:
+  BoundarySlider(BoundaryMesher& boundary, const std::vector<VolumeMesh>& volumes,
+                 double progression_factor, int threads)
+      : boundary_(boundary),
+        topology_(boundary.geometry().topology),
+        numbers_(boundary.numbers()),
+        threads_(threads),
+        progression_(progression_factor),
+        positions_(boundary.positions(numbers_)),
+        stars_(star_mesh(volumes)) {
+    for (const auto& e : boundary.edges()) arcs_.push_back(e.arcs);
+    colour_edges();
+    colour_faces();
+  }
+
+  void run() {
+    for (int i = 0; i < sweeps; ++i) {
+      for (const auto& set : edge_colours_)
+        core::parallel_for(threads_, set.size(), [&](std::size_t k) { slide_edge(set[k]); });
+      for (const auto& set : face_colours_)
+        core::parallel_for(threads_, set.size(), [&](std::size_t k) { slide_face(set[k]); });
+    }
+    for (std::size_t e = 0; e < arcs_.size(); ++e)
+      if (arcs_[e].size() > 2) boundary_.place_edge(static_cast<int>(e), arcs_[e]);
+    core::parallel_for(threads_, topology_.faces.size(), [&](std::size_t f) {
+      const int face = static_cast<int>(f);
+      if (boundary_.is_copied(face)) return;
+      const auto first = positions_.begin() + numbers_.face_first[f];
+      const auto count = static_cast<std::ptrdiff_t>(boundary_.faces()[f].inner_nodes.size());
+      boundary_.place_face(face, {first, first + count}, positions_, numbers_);
+    });
+  }
+
+ private:
+  StarMesh star_mesh(const std::vector<VolumeMesh>& volumes) const {
+    std::vector<Vec3> nodes;
+    std::vector<StarMesh::Tet> tets;
+    std::size_t node_count = positions_.size(), tet_count = 0;
+    for (const auto& v : volumes) node_count += v.nodes.size(), tet_count += v.tetrahedra.size();
+    nodes.reserve(node_count);
+    tets.reserve(tet_count);
+    for (const auto& x : positions_) nodes.push_back(scaled(x));
+    for (int grain = 0; grain < topology_.cell_count(); ++grain) {
+      auto ids = grain_surface(topology_, boundary_, numbers_, positions_, grain, boundary_.scale())
+                     .numbers;
+      const auto& volume = volumes[grain];
+      for (std::size_t i = ids.size(); i < volume.nodes.size(); ++i) {
+        ids.push_back(static_cast<int>(nodes.size()));
+        nodes.push_back(volume.nodes[i]);
+      }
+      for (const auto& t : volume.tetrahedra)
+        tets.push_back({ids[t[0]], ids[t[1]], ids[t[2]], ids[t[3]]});
+    }
+    return {std::move(nodes), std::move(tets), static_cast<int>(positions_.size())};
+  }
+
+  Vec3 scaled(const Vec3& x) const { return x.cwiseProduct(boundary_.scale()); }
+
+  /// Edges touch the grains and vertices around them: elements at a vertex are compared too.
+  void colour_edges() {
+    const int grains = topology_.cell_count();
+    std::vector<std::vector<int>> touched(topology_.edges.size());
+    for (const auto& face : topology_.faces)
+      for (const int e : face.edges)
+        for (const int c : face.cells)
+          if (c >= 0) touched[e].push_back(c);
+    for (std::size_t e = 0; e < touched.size(); ++e) {
+      if (arcs_[e].size() <= 2) touched[e].clear();
+      for (const int v : topology_.edges[e].vertices)
+        if (arcs_[e].size() > 2) touched[e].push_back(grains + v);
+      std::sort(touched[e].begin(), touched[e].end());
+      touched[e].erase(std::unique(touched[e].begin(), touched[e].end()), touched[e].end());
+    }
+    edge_colours_ = colours(touched, static_cast<std::size_t>(grains) + topology_.vertex_count);
+  }
+
+  void colour_faces() {
+    std::vector<std::vector<int>> touched(topology_.faces.size());
+    for (std::size_t f = 0; f < touched.size(); ++f)
+      if (!boundary_.is_copied(static_cast<int>(f)) && !boundary_.faces()[f].inner_nodes.empty())
+        for (const int c : topology_.faces[f].cells)
+          if (c >= 0) touched[f].push_back(c);
+    face_colours_ = colours(touched, topology_.cell_count());
+  }
+
+  /// Down the gradient of (P.29) along `tangent` (of the gradient) by a step that is halved until
+  /// `place`, the node's position (unscaled) that far along, improves its star.
+  template <class Place>
+  void slide(int node, const StarDescent& d, double slope, const Place& place) {
+    if (!(d.least > 0) || !(slope > 0) || !std::isfinite(slope)) return;
+    const auto count = static_cast<double>(stars_.star(node).size());
+    double step = std::min(longest_step * d.reach, (d.sum - count) / slope);
+    for (int i = 0; i <= halvings; ++i, step /= 2) {
+      const std::optional<Vec3> x = place(step);
+      if (!x || !star_improves(stars_, node, scaled(*x), d)) continue;
+      positions_[node] = *x;
+      stars_.move(node, scaled(*x));
+      return;
+    }
+  }
+
+  void slide_edge(int edge) {
+    auto& arcs = arcs_[edge];
+    if (arcs.size() <= 2) return;
+    const CurvedEdge curve(boundary_.geometry().edges[edge], boundary_.scale());
+    for (std::size_t k = 1; k + 1 < arcs.size(); ++k) {
+      const int node = numbers_.edge_first[edge] + static_cast<int>(k) - 1;
+      const StarDescent d = star_descent(stars_, node);
+      const double half = 1e-3 * std::min(arcs[k] - arcs[k - 1], arcs[k + 1] - arcs[k]);
+      const Vec3 tangent = scaled(curve.at(arcs[k] + half) - curve.at(arcs[k] - half)) / (2 * half);
+      const double slope = d.gradient.dot(tangent), from = arcs[k];
+      double to = from;
+      slide(node, d, std::abs(slope), [&](double step) -> std::optional<Vec3> {
+        to = slope > 0 ? from - step : from + step;
+        arcs[k] = to;
+        const double after = progression(arcs, k);
+        arcs[k] = from;
+        if (!(after <= std::max(progression_, progression(arcs, k)))) return std::nullopt;
+        return boundary_.edge_point(edge, curve, to);
+      });
+      if ((positions_[node] - boundary_.edge_point(edge, curve, from)).norm() > 0) arcs[k] = to;
+    }
+  }
+
+  /// Largest ratio of adjacent elements among those that node k changes; infinite if out of order.
+  static double progression(const std::vector<double>& arcs, std::size_t k) {
+    double worst = 1;
+    const std::size_t last = std::min(k + 2, arcs.size() - 1);
+    for (std::size_t i = k < 2 ? 2 : k; i <= last; ++i) {
+      const double a = arcs[i - 1] - arcs[i - 2], b = arcs[i] - arcs[i - 1];
+      if (!(a > 0 && b > 0)) return std::numeric_limits<double>::infinity();
+      worst = std::max({worst, a / b, b / a});
+    }
+    return worst;
+  }
+
+  void slide_face(int face) {
+    const auto count = boundary_.faces()[face].inner_nodes.size();
+    if (count == 0 || boundary_.is_copied(face)) return;
+    const FaceProjection projection(boundary_.geometry().faces[face], boundary_.scale());
+    for (std::size_t k = 0; k < count; ++k) {
+      const int node = numbers_.face_first[face] + static_cast<int>(k);
+      const StarDescent d = star_descent(stars_, node);
+      const Vec3 tangential =
+          d.gradient - projection.normal().dot(d.gradient) * projection.normal();
+      const double slope = tangential.norm();
+      const Vec3 direction = tangential / slope, from = stars_.position(node);
+      slide(node, d, slope, [&](double step) {
+        const Vec3 target = (from - step * direction).cwiseQuotient(boundary_.scale());
+        return boundary_.face_point(face, projection, target);
+      });
+    }
+  }
+
+  BoundaryMesher& boundary_;
+  const Topology& topology_;
+  const BoundaryNumbers numbers_;
+  const int threads_;
+  const double progression_;
+  std::vector<Vec3> positions_;  ///< by number, unscaled
+  StarMesh stars_;               ///< scaled
+  std::vector<std::vector<double>> arcs_;
+  std::vector<std::vector<int>> edge_colours_, face_colours_;
+};
+
+}  // namespace
+
+void slide_boundary(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
+                    double progression_factor, int threads) {
+  const auto& topology = boundary.geometry().topology;
+  for (int round = 0; round < rounds; ++round) {
+    BoundarySlider(boundary, volumes, progression_factor, threads).run();
+    const auto numbers = boundary.numbers();
+    const auto positions = boundary.positions(numbers);
+    core::parallel_for(threads, volumes.size(), [&](std::size_t grain) {
+      const auto surface = grain_surface(topology, boundary, numbers, positions,
+                                         static_cast<int>(grain), boundary.scale());
+      auto& volume = volumes[grain];
+      std::copy(surface.mesh.nodes.begin(), surface.mesh.nodes.end(), volume.nodes.begin());
+      volume = optimise_inside(surface.mesh, volume);
+    });
+  }
+}
+
+}  // namespace polyslip::mesh

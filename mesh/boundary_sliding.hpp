@@ -1,0 +1,22 @@
+#pragma once
+// The surfaces of grains that are meshed, with nodes where they suit the elements on both sides
+// (docs/theory-polycrystal.md, section 5).
+
+#include <vector>
+
+#include "mesh/boundary_mesh.hpp"
+#include "mesh/volume_mesher.hpp"
+
+namespace polyslip::mesh {
+
+/// Slides the inner nodes of edges along their edge and those of faces in their face, and moves the
+/// insides along by optimise_inside. `volumes`: [grains], scaled frame, first nodes those of
+/// grain_surface. Each step lowers the sum of rho^-3 over the elements that have the node, of every
+/// grain, and lets none of them fall below the worst; adjacent 1D elements stay within
+/// `progression_factor`, or do not get further from it. Vertices, and edges and faces whose old
+/// mesh is kept, stay. Parts of the boundary that share a grain are never moved at once, so the
+/// result is the same for any number of threads.
+void slide_boundary(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
+                    double progression_factor, int threads);
+
+}  // namespace polyslip::mesh

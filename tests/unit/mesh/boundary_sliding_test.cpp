@@ -1,0 +1,145 @@
+// Nodes that slide in faces and along edges.
+
+#include "mesh/boundary_sliding.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "mesh/geometry.hpp"
+#include "mesh/star_mesh.hpp"
+
+namespace polyslip::mesh {
+namespace {
+
+using core::Vec3;
+
+Tessellation polycrystal(int grains, std::uint64_t seed) {
+  auto t = voronoi_tessellation(PolycrystalOptions{.grains = grains, .seed = seed});
+  regularise(t, RegularisationOptions{});
+  return t;
+}
+
+double mean_worst(const Mesh& mesh) {
+  std::vector<double> worst(mesh.topology.cell_count(), 1.0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto& t = mesh.tetrahedra[e];
+    double& w = worst[mesh.tetrahedron_cell[e]];
+    w = std::min(
+        w, radius_ratio(mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]], mesh.nodes[t[3]]));
+  }
+  return std::accumulate(worst.begin(), worst.end(), 0.0) / static_cast<double>(worst.size());
+}
+
+class BoundarySliding : public testing::Test {
+ protected:
+  Mesh mesh(const Geometry& geometry, MeshingOptions options, const Vec3& scale = Vec3::Ones()) {
+    MeshingReport report;
+    options.meshers = {"gmsh-hxt"};
+    return mesh_geometry(geometry, options, scale, *pool_, report);
+  }
+
+  std::unique_ptr<MesherPool> pool_ = MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
+};
+
+TEST_F(BoundarySliding, RaisesTheWorstElementsOfGrainsAndKeepsTheBox) {
+  const auto tessellation = polycrystal(40, 3);
+  const auto geometry = geometry_of(tessellation);
+  MeshingOptions options;
+  options.element_size = 0.35;
+  options.slide_boundary = false;
+  const Mesh before = mesh(geometry, options);
+  options.slide_boundary = true;
+  const Mesh after = mesh(geometry, options);
+  ASSERT_NO_THROW(check(after));
+  EXPECT_GT(mean_worst(after), mean_worst(before) + 0.02);
+  EXPECT_GE(quality(after).min_radius_ratio, quality(before).min_radius_ratio);
+  EXPECT_GT(quality(after).mean_radius_ratio, quality(before).mean_radius_ratio);
+  const auto volumes = grain_volumes(after);
+  EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0) / 40, 1, 1e-12);
+  for (int c = 0; c < 40; ++c) EXPECT_NEAR(volumes[c], cell_volume(tessellation, c), 0.02);
+  // Vertices stay, domain faces are planes to the last bit.
+  for (int v = 0; v < tessellation.topology.vertex_count; ++v)
+    EXPECT_EQ(after.nodes[after.vertex_nodes[v]], before.nodes[before.vertex_nodes[v]]);
+  int on_domain = 0, moved = 0;
+  for (std::size_t t = 0; t < after.triangles.size(); ++t) {
+    for (int n : before.triangles[t]) moved += before.nodes[n] != after.nodes[n];
+    const int domain = after.topology.faces[after.triangle_face[t]].domain_face;
+    if (domain < 0) continue;
+    ++on_domain;
+    for (int n : after.triangles[t])
+      EXPECT_EQ(after.nodes[n][domain / 2], domain % 2 == 0 ? 0.0 : after.size[domain / 2]);
+  }
+  EXPECT_GT(on_domain, 0);
+  EXPECT_GT(moved, 0);
+}
+
+TEST_F(BoundarySliding, KeepsTheProgressionAlongEdges) {
+  const auto geometry = geometry_of(polycrystal(20, 5));
+  MeshingOptions options;
+  options.element_size = 0.25;
+  options.progression_factor = 1.5;
+  const Mesh m = mesh(geometry, options);
+  int pairs = 0;
+  for (std::size_t l = 1; l < m.lines.size(); ++l) {
+    if (m.line_edge[l] != m.line_edge[l - 1]) continue;
+    const auto length = [&](std::size_t i) {
+      return (m.nodes[m.lines[i][1]] - m.nodes[m.lines[i][0]]).norm();
+    };
+    const double ratio = length(l) / length(l - 1);
+    EXPECT_LE(std::max(ratio, 1 / ratio), 1.5 * (1 + 1e-8));
+    ++pairs;
+  }
+  EXPECT_GT(pairs, 100);
+}
+
+TEST_F(BoundarySliding, IsTheSameForAnyNumberOfThreads) {
+  const auto geometry = geometry_of(polycrystal(30, 6));
+  MeshingOptions options;
+  options.jobs = 1;
+  const Mesh one = mesh(geometry, options);
+  for (const int jobs : {2, 3}) {
+    options.jobs = jobs;
+    const Mesh other = mesh(geometry, options);
+    EXPECT_EQ(one.nodes, other.nodes);
+    EXPECT_EQ(one.tetrahedra, other.tetrahedra);
+  }
+}
+
+TEST_F(BoundarySliding, KeepsARemeshedGrainsVolume) {
+  MeshingOptions options;
+  Mesh old = mesh(geometry_of(polycrystal(20, 7)), options);
+  for (auto& x : old.nodes) {
+    x[0] += 0.08 * std::sin(2.9 * x[1]) * std::sin(3.1 * x[2]);
+    x = x.cwiseProduct(Vec3(std::exp(0.3), 1, std::exp(-0.3)));
+  }
+  const auto before = grain_volumes(old);
+  const Mesh fresh = mesh(geometry_of(old), options, Vec3(std::exp(-0.3), 1, std::exp(0.3)));
+  ASSERT_NO_THROW(check(fresh));
+  const auto after = grain_volumes(fresh);
+  for (int c = 0; c < 20; ++c) EXPECT_NEAR(after[c] / before[c], 1, 5e-3);
+}
+
+TEST(StarMesh, KnowsEachNodesTetrahedraAndTheGradientOfTheirSum) {
+  const std::vector<Vec3> nodes{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.3, 0.9}, {0.3, 0.2, -0.8}};
+  StarMesh mesh(nodes, {{0, 1, 2, 3}, {0, 2, 1, 4}}, 4);
+  EXPECT_EQ(mesh.star(0).size(), 2u);
+  EXPECT_EQ(mesh.star(3).size(), 1u);
+  const auto d = star_descent(mesh, 0);
+  constexpr double h = 1e-6;
+  for (int i = 0; i < 3; ++i) {
+    mesh.move(0, nodes[0] + h * Vec3::Unit(i));
+    const double up = star_descent(mesh, 0).sum;
+    mesh.move(0, nodes[0] - h * Vec3::Unit(i));
+    const double down = star_descent(mesh, 0).sum;
+    mesh.move(0, nodes[0]);
+    EXPECT_NEAR(d.gradient[i], (up - down) / (2 * h), 1e-5 * std::abs(d.sum));
+  }
+  EXPECT_FALSE(star_improves(mesh, 0, Vec3(0.2, 0.3, 0.95), d));  // inverts
+  EXPECT_FALSE(star_improves(mesh, 0, Vec3::Constant(std::nan("")), d));
+}
+
+}  // namespace
+}  // namespace polyslip::mesh
