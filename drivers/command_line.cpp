@@ -76,6 +76,20 @@ void add_convert(CLI::App& app, Command& c) {
   verb->callback([&c] { c.verb = Verb::convert; });
 }
 
+void add_stats(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand(
+      "stats", "Statistics of a tessellation, a mesh, or a folder of run or mesh");
+  verb->add_option("input", c.stats.input, "File (.tess, .msh, .gz too) or folder")->required();
+  verb->add_option("--to", c.stats.to, "Folder for stats.json, tables (CSV) and plots (SVG)");
+  verb->add_flag("--inner", c.stats.inner, "Only grains without a face on the domain boundary");
+  verb->add_option("--element-size", c.stats.element_size,
+                   "Element size that was asked for, for grains of unit mean volume (default: the "
+                   "deck's, else the mean element's)")
+      ->check(CLI::PositiveNumber);
+  verb->add_flag("--overwrite", c.stats.overwrite, "Replace earlier statistics in the folder");
+  verb->callback([&c] { c.verb = Verb::stats; });
+}
+
 void add_reference(CLI::App& app, Command& c) {
   app.add_subcommand("reference", "Print the deck reference (docs/deck.md)")->callback([&c] {
     c.verb = Verb::reference;
@@ -115,6 +129,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
   add_check(app, command);
   add_mesh(app, command);
   add_convert(app, command);
+  add_stats(app, command);
   add_reference(app, command);
   require_verb(app, argc, argv);
   try {

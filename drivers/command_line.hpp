@@ -4,9 +4,11 @@
 #include <optional>
 #include <string>
 
+#include "drivers/stats_verb.hpp"
+
 namespace polyslip::drivers {
 
-enum class Verb { none, run, check, mesh, convert, reference };
+enum class Verb { none, run, check, mesh, convert, stats, reference };
 
 struct Command {
   Verb verb = Verb::none;
@@ -19,6 +21,7 @@ struct Command {
   double at_strain = 0;
   std::string to;
   std::string value = "average";
+  StatsRequest stats;
 };
 
 /// What the arguments ask for. Nothing, if they asked for help or the version, which is then

@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "mesh/quality_criterion.hpp"
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh {
 namespace {
-
-constexpr double alpha = 0.2;  // weight of the sizes, eq. (5)
-constexpr double beta = 0.1;   // eq. (6)
 
 /// Facets of a positive tetrahedron, normals outward.
 constexpr std::array<std::array<int, 3>, 4> outward_facets{
@@ -141,22 +139,15 @@ double min_radius_ratio(const VolumeMesh& mesh) {
 }
 
 double mesh_quality_O(const VolumeMesh& mesh, double element_size) {
-  if (mesh.tetrahedra.empty()) return 0;
-  double log_distortion = 0, sizes = 0;
+  QualityCriterion criterion(element_size);
   for (const auto& t : mesh.tetrahedra) {
     const std::array<const core::Vec3*, 4> x{&mesh.nodes[t[0]], &mesh.nodes[t[1]],
                                              &mesh.nodes[t[2]], &mesh.nodes[t[3]]};
-    const double rho = radius_ratio(*x[0], *x[1], *x[2], *x[3]);
-    if (!(rho > 0)) return 0;
-    const double power = std::pow(rho, beta);
-    // rho = 1 up to rounding: sigma = 1, as the exponent's limit is 0.
-    if (power < 1) log_distortion += std::exp(power / (power - 1)) * std::log(rho);
     double length = 0;
     for (const auto& edge : tetrahedron_edges) length += (*x[edge[0]] - *x[edge[1]]).norm() / 6;
-    sizes += std::min(length / element_size, element_size / length);
+    criterion.add(radius_ratio(*x[0], *x[1], *x[2], *x[3]), length);
   }
-  const double mean_size = sizes / static_cast<double>(mesh.tetrahedra.size());
-  return std::exp((1 - alpha) * log_distortion) * std::pow(mean_size, 3 * alpha);
+  return criterion.value();
 }
 
 }  // namespace polyslip::mesh

@@ -14,6 +14,7 @@
 #include "drivers/mesh_verb.hpp"
 #include "drivers/options.hpp"
 #include "drivers/run.hpp"
+#include "drivers/stats_verb.hpp"
 #include "results/convert.hpp"
 #include "solver/petsc_session.hpp"
 
@@ -88,6 +89,9 @@ int obey(const Command& command) {
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);
+    case Verb::stats:
+      drivers::print_statistics(command.stats);
+      return drivers::exit_fine;
     case Verb::reference:
       std::cout << drivers::deck_reference();
       return drivers::exit_fine;
