@@ -113,9 +113,8 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
   input.mesh = t.optional_file(
       "file",
       {.help =
-           "The first mesh, made elsewhere, in Gmsh's format 2.2 (`.msh`, ASCII, `.gz` too), "
-           "grains "
-           "as physical volumes, of a box; its grains' faces, edges and vertices are found from "
+           "The first mesh, made elsewhere, in Gmsh's format 2.2 or 4.1 (`.msh`, ASCII or binary, "
+           "`.gz` too), grains as physical volumes, of a box; its grains' faces, edges and vertices are found from "
            "them. [polycrystal] and [regularisation] then have no meaning, but for the seed of "
            "uniform orientations. The other keys here are those of remeshings. A relative path "
            "starts at the deck's folder."});

@@ -112,9 +112,10 @@ class TessReader {
   }
 
   void read_orientations() {
-    read_orientation_convention(in_);
+    const OrientationDescriptor descriptor = read_orientation_descriptor(in_);
     result_.orientations.emplace();
-    for (int c = 0; c < cells_; ++c) result_.orientations->push_back(read_orientation(in_));
+    for (int c = 0; c < cells_; ++c)
+      result_.orientations->push_back(read_orientation(in_, descriptor));
   }
 
   void read_vertices() {

@@ -12,7 +12,7 @@ namespace polyslip::mesh {
 
 struct TessellationFile {
   Tessellation tessellation;
-  /// One a cell, where the file has them (`*ori`, convention rodrigues:passive).
+  /// One a cell, where the file has them (`*ori`; see mesh/orientation_block.hpp).
   std::optional<std::vector<core::Quaternion>> orientations;
 };
 

@@ -67,6 +67,7 @@ TextScanner::TextScanner(std::string path, std::string text)
     : path_(std::move(path)), text_(std::move(text)) {}
 
 void TextScanner::fail(const std::string& what) const {
+  if (binary_) throw core::InputError(fmt::format("{}: at byte {}: {}", path_, at_, what));
   throw core::InputError(fmt::format("{}:{}: {}", path_, line_, what));
 }
 
@@ -118,6 +119,20 @@ void TextScanner::expect(std::string_view expected) {
     fail(fmt::format("{} where {} should be",
                      found.empty() ? "the file ends" : fmt::format("'{}'", found), expected));
   at_ += found.size();
+}
+
+std::string_view TextScanner::bytes(std::size_t count, const char* what) {
+  binary_ = true;
+  if (count > text_.size() - at_) fail(fmt::format("the file ends where {} should be", what));
+  at_ += count;
+  return std::string_view(text_).substr(at_ - count, count);
+}
+
+void TextScanner::skip_past(std::string_view marker) {
+  const std::size_t found = text_.find(marker, at_);
+  if (found == std::string::npos) fail(fmt::format("the file ends where {} should be", marker));
+  for (; at_ < found + marker.size(); ++at_)
+    if (text_[at_] == '\n') ++line_;
 }
 
 std::string_view TextScanner::rest_of_line() {

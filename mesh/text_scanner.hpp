@@ -1,6 +1,7 @@
 #pragma once
 // Reading a text file word by word, with the line in every message.
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,12 @@ class TextScanner {
   void expect(std::string_view expected);
   /// The rest of the line, which may be empty.
   std::string_view rest_of_line();
+  /// The next `count` bytes, whatever they are. From the first such call on, messages tell the byte
+  /// ("<path>: at byte <n>: <what>") in place of the line, which has lost its meaning.
+  std::string_view bytes(std::size_t count, const char* what);
+  /// Goes behind the next place where `marker` stands.
+  void skip_past(std::string_view marker);
+  std::size_t bytes_left() const { return text_.size() - at_; }
 
   [[noreturn]] void fail(const std::string& what) const;
   const std::string& path() const { return path_; }
@@ -37,6 +44,7 @@ class TextScanner {
   std::string path_, text_;
   std::size_t at_ = 0;
   int line_ = 1;
+  bool binary_ = false;
 };
 
 }  // namespace polyslip::mesh

@@ -227,10 +227,14 @@ TEST(MshReader, SaysWhereAFileIsWrong) {
             std::string::npos);
   EXPECT_NE(fault(replaced(text, "\n5 0 ", "\n5 nan ")).find("a coordinate of a node is nan"),
             std::string::npos);
-  EXPECT_EQ(fault(replaced(text, "2.2 0 8", "4.1 0 8")),
-            "2: version 4.1 of Gmsh's format; 2.2 is read (gmsh -format msh22)");
-  EXPECT_EQ(fault(replaced(text, "2.2 0 8", "2.2 1 8")),
-            "2: the file is binary; only ASCII is read");
+  EXPECT_EQ(fault(replaced(text, "2.2 0 8", "4 0 8")),
+            "2: version 4 of Gmsh's format; 2.2 and 4.1 are read (gmsh -save -format msh41)");
+  EXPECT_EQ(fault(replaced(text, "2.2 0 8", "2.2 2 8")),
+            "2: file type 2; 0 (ASCII) and 1 (binary) are read");
+  EXPECT_EQ(fault(replaced(text, "2.2 0 8", "2.2 1 4")),
+            "2: numbers of 4 bytes; binary files need 8");
+  EXPECT_NE(fault(replaced(text, "2.2 0 8", "2.2 1 8")).find("the number 1 that tells"),
+            std::string::npos);
   EXPECT_NE(fault(replaced(text, "\n5 0 ", "\n4 0 ")).find("node 4 is there twice"),
             std::string::npos);
   EXPECT_NE(fault(replaced(text, "\n5 0 ", "\n5555 0 ")).find("node 5, which is not in $Nodes"),

@@ -172,7 +172,10 @@ TEST(TessReader, SaysWhereAFileIsWrong) {
   EXPECT_EQ(fault(replaced(text, "3 standard", "3 periodic")),
             "5: type 'periodic'; only standard is read");
   EXPECT_EQ(fault(replaced(text, "rodrigues:passive", "quaternion:active")),
-            "32: orientations are 'quaternion:active'; only rodrigues:passive is read");
+            "34: a quaternion of length 0.328229, not 1");
+  EXPECT_NE(fault(replaced(text, "rodrigues:passive", "rodriguez"))
+                .find("32: orientations are 'rodriguez'; read are rodrigues, "),
+            std::string::npos);
   EXPECT_EQ(fault(replaced(text, "**vertex\n 110", "**vertex\n 99999999")),
             "54: the number of vertices is 99999999, which the rest of the file cannot hold");
   EXPECT_NE(fault(replaced(text, "1.674209429732", "2.9")), "");
