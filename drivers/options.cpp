@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "drivers/options_check.hpp"
+#include "drivers/options_sections.hpp"
 #include "drivers/orientations.hpp"
 
 namespace polyslip::drivers {
@@ -181,97 +182,6 @@ OrientationOptions read_orientation_options(Deck& deck, const InputOptions& inpu
   return o;
 }
 
-material::MaterialOptions read_material(Deck& deck) {
-  auto t =
-      deck.table("material",
-                 "Elasto-viscoplastic FCC crystal with the 12 {111}<110> systems: slip rate = "
-                 "reference_slip_rate |tau/g|^(1/m) sign(tau), dg/dt = h0 (gs - g)/(gs - g0) "
-                 "times the sum of the slip rates' magnitudes. Defaults: the paper's aluminium.");
-  material::MaterialOptions o;
-  const auto modulus = [&](const char* key, double fallback, bool positive, const char* help) {
-    return t.number(key, {.unit = "MPa",
-                          .fallback = fallback,
-                          .min = positive ? 0 : -core::unbounded,
-                          .exclusive_min = true,
-                          .help = help});
-  };
-  o.c11 = modulus("c11", o.c11, true, "Elastic constant C11; larger than c12.");
-  o.c12 = modulus("c12", o.c12, false, "Elastic constant C12; larger than -c11/2.");
-  o.c44 = modulus("c44", o.c44, true, "Elastic constant C44, half the modulus of tensor shear.");
-  o.reference_slip_rate = t.number("reference_slip_rate", {.unit = "1/s",
-                                                           .fallback = o.reference_slip_rate,
-                                                           .min = 0,
-                                                           .exclusive_min = true,
-                                                           .help = "Slip rate at tau = g."});
-  o.rate_sensitivity = t.number("rate_sensitivity",
-                                {.fallback = o.rate_sensitivity,
-                                 .min = 0.001,
-                                 .max = 1,
-                                 .help = "m: the exponent of |tau/g| is 1/m, so stress goes with "
-                                         "the strain rate to the power m."});
-  o.g0 = modulus("g0", o.g0, true, "Initial slip resistance.");
-  o.gs = modulus("gs", o.gs, true,
-                 "Slip resistance at saturation; larger than g0 (with h0 = 0 it "
-                 "may be equal).");
-  o.h0 = t.number("h0", {.unit = "MPa",
-                         .fallback = o.h0,
-                         .min = 0,
-                         .help = "Initial hardening modulus; 0: no hardening."});
-  return o;
-}
-
-solver::LoadingOptions read_loading(Deck& deck) {
-  auto t = deck.table("loading", "What is done to the box, and in which steps.");
-  solver::LoadingOptions o;
-  o.type =
-      t.text("type", {.fallback = o.type,
-                      .choices = {"plane-strain-compression"},
-                      .help = "Compression along z; y faces fixed in y, x0 a symmetry plane, x1 "
-                              "free; all sliding."});
-  o.strain_rate = t.number("strain_rate", {.unit = "1/s",
-                                           .fallback = o.strain_rate,
-                                           .min = 0,
-                                           .exclusive_min = true,
-                                           .help = "True strain rate, constant in time."});
-  o.final_strain =
-      t.number("final_strain", {.fallback = o.final_strain,
-                                .min = 0,
-                                .exclusive_min = true,
-                                .max = 10,
-                                .help = "Strain at the end, ln(initial height/height)."});
-  o.max_strain_increment = t.number("max_strain_increment", {.fallback = o.max_strain_increment,
-                                                             .min = 0,
-                                                             .exclusive_min = true,
-                                                             .max = 0.2,
-                                                             .help = "Largest step."});
-  o.initial_strain_increment = t.number(
-      "initial_strain_increment",
-      {.fallback = o.initial_strain_increment,
-       .min = 0,
-       .exclusive_min = true,
-       .help = "First step from zero stress, at the start and after a remeshing; not more than "
-               "max_strain_increment is taken."});
-  o.increment_growth =
-      t.number("increment_growth", {.fallback = o.increment_growth,
-                                    .min = 1,
-                                    .exclusive_min = true,
-                                    .max = 10,
-                                    .help = "Largest ratio of a step to the last."});
-  o.min_strain_increment =
-      t.number("min_strain_increment", {.fallback = o.min_strain_increment,
-                                        .min = 0,
-                                        .exclusive_min = true,
-                                        .help = "A run whose steps have to be smaller than this "
-                                                "stops, with a state to restart from."});
-  o.fixed_increment = t.boolean(
-      "fixed_increment",
-      {.fallback = o.fixed_increment,
-       .help = "Every step is max_strain_increment, or less to end at a strain that is asked for; "
-               "for comparisons of runs step by step."});
-  o.initial_strain_increment = std::min(o.initial_strain_increment, o.max_strain_increment);
-  return o;
-}
-
 remap::RemeshingOptions read_remeshing(Deck& deck) {
   auto t = deck.table("remeshing", "When the deformed polycrystal gets a new mesh (section 2.3).");
   remap::RemeshingOptions o;
@@ -296,34 +206,6 @@ remap::RemeshingOptions read_remeshing(Deck& deck) {
                                         .help = "Largest relative change of a grain's volume in a "
                                                 "remeshing; beyond it the run stops and names the "
                                                 "grain."});
-  return o;
-}
-
-solver::SolverOptions read_solver(Deck& deck) {
-  auto t = deck.table("solver", "Tolerances and limits of the equation solvers.");
-  solver::SolverOptions o;
-  const auto tolerance = [&](const char* key, double fallback, const char* help) {
-    return t.number(
-        key, {.fallback = fallback, .min = 1e-14, .max = 1, .exclusive_max = true, .help = help});
-  };
-  const auto count = [&](const char* key, int fallback, const char* help) {
-    return static_cast<int>(
-        t.integer(key, {.fallback = fallback, .min = 1, .max = 1'000'000, .help = help}));
-  };
-  o.newton_tolerance = tolerance(
-      "newton_tolerance", o.newton_tolerance,
-      "A step has converged when the forces out of balance at free nodes are this small "
-      "relative to the reactions at prescribed ones (2-norms), their sums and first moments "
-      "relative to the largest face force, and the volumes' mismatch (rms of ln(V/V0) - p/K) "
-      "relative to the strain increment.");
-  o.linear_tolerance =
-      tolerance("linear_tolerance", o.linear_tolerance,
-                "A linear solve ends when the 2-norm of its residual is this small relative to the "
-                "2-norm of its right side.");
-  o.max_newton_iterations = count("max_newton_iterations", o.max_newton_iterations,
-                                  "Newton iterations of a step; beyond them the step is cut.");
-  o.max_linear_iterations = count("max_linear_iterations", o.max_linear_iterations,
-                                  "Iterations of a linear solve; beyond them the step is cut.");
   return o;
 }
 

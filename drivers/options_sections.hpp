@@ -1,0 +1,14 @@
+#pragma once
+// Readers of single tables of the deck, each in a file of its own; read_options calls them.
+
+#include "core/deck.hpp"
+#include "material/crystal_law.hpp"
+#include "solver/options.hpp"
+
+namespace polyslip::drivers {
+
+material::MaterialOptions read_material(core::Deck& deck);
+solver::LoadingOptions read_loading(core::Deck& deck);
+solver::SolverOptions read_solver(core::Deck& deck);
+
+}  // namespace polyslip::drivers
