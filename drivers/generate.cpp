@@ -20,9 +20,11 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log) {
   const mesh::RegularisationReport report = mesh::regularise(tessellation, options.regularisation);
   log.info(
       "regularisation: {} of {} edges were short, {} are left; {} deletions in {} loops; {} "
-      "refused for flatness, {} for topology; largest flatness fault {:.1f} degrees",
+      "refused for flatness, {} for folding, {} for topology, {} for polylines, {} for the domain; "
+      "largest flatness fault {:.1f} degrees",
       report.short_before, report.edges_before, report.short_after, report.deleted, report.loops,
-      report.refused_flatness, report.refused_topology, report.max_flatness_fault);
+      report.refused.flatness, report.refused.fold, report.refused.topology,
+      report.refused.polyline, report.refused.domain, report.max_flatness_fault);
   tessellation.check();
   return tessellation;
 }

@@ -66,8 +66,8 @@ mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& 
   mesh::RegularisationOptions o;
   if (const char* made = mesh_input(deck)) {
     bool given = false;
-    for (const char* key :
-         {"max_edge_length", "max_flatness_fault", "polyline_share", "polyline_angle"})
+    for (const char* key : {"max_edge_length", "max_flatness_fault", "polyline_share",
+                            "polyline_angle", "position_search", "flattening_sweeps"})
       given |= counts(deck, "regularisation", key, made);
     if (!given) return o;
   }
@@ -94,8 +94,8 @@ mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& 
        .min = 0,
        .max = 1,
        .help = "Edges shorter than this share of max_edge_length are removed even where two faces "
-               "of a grain then share a polyline of two edges. 0, with polyline_angle = 0: the "
-               "paper's regularisation, which never does so."});
+               "of a grain then share a polyline of two edges. 0, with polyline_angle = 0: never. "
+               "The paper's regularisation has 0, 0, and 1 and 0 in the next two keys."});
   o.polyline_angle = t.number(
       "polyline_angle",
       {.unit = "degrees",
@@ -105,6 +105,21 @@ mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& 
        .exclusive_max = true,
        .help = "So are edges shorter than max_edge_length opposite to a corner of a triangular "
                "face that is sharper than this; 0: none."});
+  o.position_search = t.number(
+      "position_search",
+      {.fallback = o.position_search,
+       .min = 1,
+       .max = 4,
+       .help = "Where the paper's position of a new vertex leaves a flatness fault above "
+               "max_flatness_fault, but not above this times it, a better one is sought nearby; "
+               "1: never."});
+  o.flattening_sweeps = static_cast<int>(t.integer(
+      "flattening_sweeps",
+      {.fallback = o.flattening_sweeps,
+       .min = 0,
+       .max = 10,
+       .help = "So many times, once no more edge can be removed, vertices move to where their "
+               "faces are flatter; then removal goes on. 0: never."}));
   return o;
 }
 

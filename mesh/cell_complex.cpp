@@ -25,7 +25,8 @@ bool subset(int part, int whole) { return (part & ~whole) == 0; }
 
 }  // namespace
 
-CellComplex::CellComplex(const Tessellation& tessellation) : size_(tessellation.size) {
+CellComplex::CellComplex(const Tessellation& tessellation)
+    : planes_(tessellation.face_planes), seeds_(tessellation.seeds), size_(tessellation.size) {
   const Topology& t = tessellation.topology;
   vertices_.resize(t.vertex_count);
   edges_.resize(t.edges.size());
@@ -111,24 +112,28 @@ bool CellComplex::keeps_four_faces(const std::vector<int>& lost) const {
   return true;
 }
 
-bool CellComplex::can_collapse(int edge) const {
+bool CellComplex::domain_allows(int edge) const {
   const auto [a, b] = edges_[edge].vertices;
   const int walls_a = vertices_[a].walls, walls_b = vertices_[b].walls;
   if (!subset(walls_a, walls_b) && !subset(walls_b, walls_a)) return false;
+  int walls_of_edge = 0;
+  for (const int f : edges_[edge].faces)
+    if (faces_[f].domain_face >= 0) walls_of_edge |= 1 << faces_[f].domain_face;
+  return (walls_a & walls_b) == walls_of_edge;
+}
 
+CellComplex::Obstacle CellComplex::obstacle(int edge) const {
+  if (!domain_allows(edge)) return Obstacle::domain;
+  const auto [a, b] = edges_[edge].vertices;
   auto around = edges_[edge].faces;
   std::sort(around.begin(), around.end());
-  if (common(faces_at(a), faces_at(b)) != around) return false;
+  if (common(faces_at(a), faces_at(b)) != around) return Obstacle::topology;
 
   std::vector<int> cells;
   for (const int f : around)
     cells.insert(cells.end(), faces_[f].cells.begin(), faces_[f].cells.end());
   sort_unique(cells);
-  if (common(cells_at(a), cells_at(b)) != cells) return false;
-  int walls_of_edge = 0;
-  for (const int f : around)
-    if (faces_[f].domain_face >= 0) walls_of_edge |= 1 << faces_[f].domain_face;
-  if ((walls_a & walls_b) != walls_of_edge) return false;
+  if (common(cells_at(a), cells_at(b)) != cells) return Obstacle::topology;
 
   const auto triangles = triangles_of(edge);
   std::vector<int> neighbours_a, neighbours_b;
@@ -139,8 +144,8 @@ bool CellComplex::can_collapse(int edge) const {
   std::sort(neighbours_a.begin(), neighbours_a.end());
   std::sort(neighbours_b.begin(), neighbours_b.end());
   // No triangle may be missing, and no two may share their third vertex.
-  if (common(neighbours_a, neighbours_b).size() != triangles.size()) return false;
-  return keeps_four_faces(triangles);
+  if (common(neighbours_a, neighbours_b).size() != triangles.size()) return Obstacle::topology;
+  return keeps_four_faces(triangles) ? Obstacle::none : Obstacle::topology;
 }
 
 void CellComplex::merge_sides_of_triangle(int face, int edge, int kept) {
@@ -293,7 +298,7 @@ void CellComplex::store(Tessellation& tessellation) const {
       out.forward.push_back(side.forward);
     }
     t.faces.push_back(std::move(out));
-    planes.push_back(tessellation.face_planes[f]);
+    planes.push_back(planes_[f]);
     tessellation.face_masters.push_back(face.master);
   }
   for (const Cell& c : cells_) {

@@ -50,6 +50,10 @@ class CellComplex {
   const Edge& edge(int id) const { return edges_[id]; }
   const Face& face(int id) const { return faces_[id]; }
   const Cell& cell(int id) const { return cells_[id]; }
+  /// Of the Voronoi tessellation: a face's plane, a cell's seed.
+  const Plane& plane(int face) const { return planes_[face]; }
+  const core::Vec3& seed(int cell) const { return seeds_[cell]; }
+  int vertex_count() const { return static_cast<int>(vertices_.size()); }
   int edge_count() const { return static_cast<int>(edges_.size()); }
   int face_count() const { return static_cast<int>(faces_.size()); }
 
@@ -61,13 +65,16 @@ class CellComplex {
   std::vector<int> faces_at(int vertex) const;
   std::vector<int> cells_at(int vertex) const;
 
-  /// Whether the edge can become a vertex so that each cell stays a polyhedron with the topology of
-  /// a ball, and the box keeps its corners, edges and faces:
-  ///  - one of the two vertices is bound to all the domain faces to which the other is bound;
-  ///  - faces and cells (the outside included) that hold both vertices hold the edge;
-  ///  - vertices that neighbour both do so across a triangular face of the edge;
-  ///  - no cell keeps fewer than four faces.
-  bool can_collapse(int edge) const;
+  /// Why an edge cannot become a vertex so that each cell stays a polyhedron with the topology of a
+  /// ball, and the box keeps its corners, edges and faces. It can (none) if
+  ///  - domain: one of the two vertices is bound to all the domain faces to which the other is
+  ///    bound, and those to which both are bound hold the edge;
+  ///  - topology: faces and cells (the outside included) that hold both vertices hold the edge;
+  ///    vertices that neighbour both do so across a triangular face of the edge; no cell keeps
+  ///    fewer than four faces.
+  enum class Obstacle { none, domain, topology };
+  Obstacle obstacle(int edge) const;
+  bool can_collapse(int edge) const { return obstacle(edge) == Obstacle::none; }
 
   /// Replaces an edge and its vertices by one vertex, whose id it returns: the edge's vertex 0,
   /// at the mid point or on the domain faces to which one of the two was bound. A triangular face
@@ -104,6 +111,7 @@ class CellComplex {
   int opposite(int edge, int vertex) const;
   std::vector<int> triangles_of(int edge) const;
   bool on_polyline(int vertex) const;
+  bool domain_allows(int edge) const;
   bool keeps_four_faces(const std::vector<int>& lost) const;
   void merge_sides_of_triangle(int face, int edge, int kept);
 
@@ -111,6 +119,8 @@ class CellComplex {
   std::vector<Edge> edges_;
   std::vector<Face> faces_;
   std::vector<Cell> cells_;
+  std::vector<Plane> planes_;
+  std::vector<core::Vec3> seeds_;
   std::vector<Saved> journal_;
   core::Vec3 size_;
 };

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,46 +11,46 @@
 
 #include "core/error.hpp"
 #include "mesh/cell_complex.hpp"
+#include "mesh/complex_shape.hpp"
 #include "mesh/face_fan.hpp"
 #include "mesh/tessellation.hpp"
 
 namespace polyslip::mesh {
 namespace {
 
-using core::Mat3;
 using core::Vec3;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-enum class Outcome { deleted, distorted, impossible };
+enum class Outcome { deleted, flatness, fold, topology, polyline, domain };
 
 class Regulariser {
  public:
   Regulariser(Tessellation& tessellation, const RegularisationOptions& options)
       : tess_(tessellation),
         complex_(tessellation),
+        options_(options),
         max_length_(options.max_edge_length),
         max_fault_(chord_of_degrees(options.max_flatness_fault)),
+        search_fault_(chord_of_degrees(options.position_search * options.max_flatness_fault)),
         polyline_length_(options.polyline_share * options.max_edge_length),
         polyline_cosine_(std::cos(options.polyline_angle * std::numbers::pi / 180)) {}
 
   RegularisationReport run() {
-    RegularisationReport report;
-    report.edges_before = complex_.edge_count();
-    report.short_before = count_short();
-    int before;
-    do {
-      before = report.deleted;
-      loops_until_nothing_changes(false, report);
-      loops_until_nothing_changes(true, report);
-    } while (report.deleted != before);
-    report.short_after = count_short();
+    report_.edges_before = complex_.edge_count();
+    report_.short_before = count_short();
+    delete_short_edges();
+    if (report_.deleted > 0 && options_.flattening_sweeps > 0) {
+      for (int i = 0; i < options_.flattening_sweeps; ++i) flatten();
+      delete_short_edges();
+    }
+    report_.short_after = count_short();
     for (int f = 0; f < complex_.face_count(); ++f)
       if (complex_.face(f).alive)
-        report.max_flatness_fault =
-            std::max(report.max_flatness_fault, degrees_of_chord(complex_.face(f).fault));
+        report_.max_flatness_fault =
+            std::max(report_.max_flatness_fault, degrees_of_chord(complex_.face(f).fault));
     complex_.store(tess_);
-    return report;
+    return report_;
   }
 
  private:
@@ -100,65 +99,94 @@ class Regulariser {
     return n;
   }
 
-  void loops_until_nothing_changes(bool polylines, RegularisationReport& report) {
+  void delete_short_edges() {
+    int before;
+    do {
+      before = report_.deleted;
+      loops_until_nothing_changes(false);
+      loops_until_nothing_changes(true);
+    } while (report_.deleted != before);
+  }
+
+  void loops_until_nothing_changes(bool polylines) {
     polylines_ = polylines;
-    for (int before = -1; before != report.deleted;) {
-      before = report.deleted;
-      ++report.loops;
-      loop(report);
+    for (int before = -1; before != report_.deleted;) {
+      before = report_.deleted;
+      ++report_.loops;
+      const auto refused = loop();
+      if (!polylines_) report_.refused = refused;
     }
   }
 
   // Each short edge once, in the order of lengths; edges of a new vertex again, since they moved.
-  void loop(RegularisationReport& report) {
+  RegularisationReport::Refused loop() {
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
     const auto push = [&](int edge) {
       if (is_short(edge) && (!polylines_ || may_leave_polyline(edge)))
         queue.push({complex_.length(edge), edge});
     };
     for (int e = 0; e < complex_.edge_count(); ++e) push(e);
-    int distorted = 0, impossible = 0;
+    RegularisationReport::Refused refused;
     while (!queue.empty()) {
       const auto [length, edge] = queue.top();
       queue.pop();
       if (!complex_.edge(edge).alive || complex_.length(edge) != length) continue;
       int vertex = -1;
-      switch (try_edge(edge, vertex, report.deleted)) {
+      switch (try_edge(edge, vertex)) {
         case Outcome::deleted:
           for (const int e : complex_.vertex(vertex).edges) push(e);
           break;
-        case Outcome::distorted:
-          ++distorted;
+        case Outcome::flatness:
+          ++refused.flatness;
           break;
-        case Outcome::impossible:
-          ++impossible;
+        case Outcome::fold:
+          ++refused.fold;
+          break;
+        case Outcome::topology:
+          ++refused.topology;
+          break;
+        case Outcome::polyline:
+          ++refused.polyline;
+          break;
+        case Outcome::domain:
+          ++refused.domain;
           break;
       }
     }
-    if (polylines_) return;
-    report.refused_flatness = distorted;
-    report.refused_topology = impossible;
+    return refused;
   }
 
-  Outcome try_edge(int edge, int& vertex, int& deleted) {
-    if (!complex_.can_collapse(edge)) return Outcome::impossible;
+  Outcome try_edge(int edge, int& vertex) {
+    // Without any distortion only edges among triangles could be deleted: none is.
+    if (max_fault_ == 0) return Outcome::flatness;
+    using Obstacle = CellComplex::Obstacle;
+    const Obstacle obstacle = complex_.obstacle(edge);
+    if (obstacle == Obstacle::domain) return Outcome::domain;
+    if (obstacle == Obstacle::topology) return Outcome::topology;
     const auto start = complex_.mark();
     const Trial single = collapse(edge);
     vertex = single.vertex;
-    if (single.fault <= max_fault_ && sound(vertex, start)) {
+    const Outcome outcome = judge(single, start);
+    if (outcome == Outcome::deleted) {
       complex_.commit();
-      ++deleted;
-      return Outcome::deleted;
+      ++report_.deleted;
+      return outcome;
     }
     if (const int second = best_second_edge(vertex, start); second >= 0) {
       vertex = collapse(second).vertex;
       complex_.commit();
-      deleted += 2;
+      report_.deleted += 2;
       return Outcome::deleted;
     }
     complex_.roll_back(start);
-    const bool distorted = single.fault > max_fault_ && single.fault < infinity;
-    return distorted ? Outcome::distorted : Outcome::impossible;
+    return outcome;
+  }
+
+  Outcome judge(const Trial& trial, std::size_t start) const {
+    if (trial.fault == infinity) return Outcome::fold;
+    if (trial.fault > max_fault_) return Outcome::flatness;
+    if (!polylines_ && complex_.polyline_since(start)) return Outcome::polyline;
+    return cells_sound(complex_, trial.vertex) ? Outcome::deleted : Outcome::fold;
   }
 
   // The short edge of a new vertex whose deletion distorts least, within f_max; -1 if none does.
@@ -170,7 +198,7 @@ class Regulariser {
       if (!is_short(e) || !complex_.can_collapse(e)) continue;
       const auto here = complex_.mark();
       const Trial trial = collapse(e);
-      if (trial.fault <= max_fault_ && trial.fault < best_fault && sound(trial.vertex, start)) {
+      if (trial.fault < best_fault && judge(trial, start) == Outcome::deleted) {
         best = e;
         best_fault = trial.fault;
       }
@@ -180,109 +208,98 @@ class Regulariser {
   }
 
   Trial collapse(int edge) {
+    const double length = complex_.length(edge);
     const int vertex = complex_.collapse(edge);
     const auto faces = complex_.faces_at(vertex);
-    complex_.move(vertex, least_squares_position(vertex, faces));
-    double worst = 0;
+    complex_.move(vertex, least_squares_position(complex_, vertex, faces));
+    const double fault = fit_faces(complex_, faces);
+    if (fault > max_fault_ && options_.position_search > 1)
+      return {vertex, search_position(vertex, faces, length)};
+    return {vertex, fault};
+  }
+
+  // Compass search for a position within f_max, from the one of eq. (2), in steps from a quarter of
+  // the deleted edge's length down to a 32nd.
+  double search_position(int vertex, const std::vector<int>& faces, double length) {
+    double fault = largest_fault(vertex, complex_.vertex(vertex).position, faces, infinity);
+    if (!(fault <= search_fault_)) return fit_faces(complex_, faces);
+    Vec3 best = complex_.vertex(vertex).position;
+    for (double step = length / 4; step > length / 50 && fault > max_fault_;) {
+      bool better = false;
+      for (int i = 0; i < 6 && fault > max_fault_; ++i) {
+        if (complex_.vertex(vertex).walls >> i / 2 * 2 & 3) continue;
+        const Vec3 x = best + (i % 2 ? step : -step) * Vec3::Unit(i / 2);
+        const double there = largest_fault(vertex, x, faces, fault);
+        if (there < fault) {
+          fault = there;
+          best = x;
+          better = true;
+        }
+      }
+      if (!better) step /= 2;
+    }
+    complex_.move(vertex, best);
+    return fit_faces(complex_, faces);
+  }
+
+  // Moves the vertex. The largest flatness fault of its faces, or `enough` or more.
+  double largest_fault(int vertex, const Vec3& x, const std::vector<int>& faces, double enough) {
+    complex_.move(vertex, x);
+    double fault = 0;
     for (const int f : faces) {
-      const auto points = complex_.loop_points(f);
-      const BestFan fan = best_fan(points);
-      complex_.set_fan(f, fan.master, fan.fault);
-      worst = std::max(worst, fan.fault);
-      if (!sound_face(f, points, fan.master)) return {vertex, infinity};
+      fault = std::max(fault, best_fan(complex_.loop_points(f)).fault);
+      if (fault >= enough) break;
     }
-    return {vertex, worst};
+    return fault;
   }
 
-  bool sound_face(int f, const std::vector<Vec3>& points, int master) const {
-    return vector_area(points).dot(tess_.face_planes[f].normal) > 0 &&
-           unfolded_in_projection(points, master);
+  // Each vertex of distorted faces moves towards where these are flattest, the whole, a half or a
+  // quarter of the way, if that lowers the sum of their squared faults.
+  void flatten() {
+    for (int v = 0; v < complex_.vertex_count(); ++v) {
+      if (!complex_.vertex(v).alive) continue;
+      const auto faces = complex_.faces_at(v);
+      double worst = max_fault_;
+      const double sum = sum_of_faults(faces, worst);
+      if (!(sum > negligible_fault)) continue;
+      const Vec3 from = complex_.vertex(v).position;
+      const Vec3 way = flattest_position(complex_, v, faces) - from;
+      for (const double part : {1.0, 0.5, 0.25}) {
+        const auto start = complex_.mark();
+        complex_.move(v, from + part * way);
+        double ignored = 0;
+        if (fit_faces(complex_, faces) <= worst && sum_of_faults(faces, ignored) < sum &&
+            cells_sound(complex_, v)) {
+          complex_.commit();
+          break;
+        }
+        complex_.roll_back(start);
+      }
+    }
   }
 
-  // Eq. (2): least squares of the distances to the faces' planes in the Voronoi tessellation. The
-  // vertex stays on its domain faces. Where the planes leave its position open it stays near the
-  // mid point of the edge, from which it comes.
-  Vec3 least_squares_position(int vertex, const std::vector<int>& faces) const {
-    const auto& v = complex_.vertex(vertex);
-    Mat3 normal_matrix = Mat3::Zero();
-    Vec3 residual = Vec3::Zero();
+  double sum_of_faults(const std::vector<int>& faces, double& worst) const {
+    double sum = 0;
     for (const int f : faces) {
-      if (complex_.face(f).domain_face >= 0) continue;
-      const Plane& plane = tess_.face_planes[f];
-      normal_matrix += plane.normal * plane.normal.transpose();
-      residual += plane.normal * (plane.offset - plane.normal.dot(v.position));
+      sum += complex_.face(f).fault;
+      worst = std::max(worst, complex_.face(f).fault);
     }
-    normal_matrix += towards_mid_point * Mat3::Identity();
-    for (int w = 0; w < 6; ++w) {
-      if (!(v.walls >> w & 1)) continue;
-      const int axis = w / 2;
-      normal_matrix.row(axis).setZero();
-      normal_matrix.col(axis).setZero();
-      normal_matrix(axis, axis) = 1;
-      residual[axis] = 0;
-    }
-    Vec3 position = v.position + normal_matrix.ldlt().solve(residual);
-    for (int w = 0; w < 6; ++w)
-      if (v.walls >> w & 1) position[w / 2] = v.position[w / 2];
-    return position;
+    return sum;
   }
 
-  bool sound(int vertex, std::size_t start) const {
-    return (polylines_ || !complex_.polyline_since(start)) && cells_sound(vertex);
-  }
-
-  // Each cell at the vertex is seen as a whole, and right side out, from its centroid: then its
-  // faces cannot cross one another.
-  bool cells_sound(int vertex) const {
-    for (const int c : complex_.cells_at(vertex))
-      if (c >= 0 && !seen_from_centroid(c)) return false;
-    return true;
-  }
-
-  template <class Visit>
-  void for_each_triangle(int cell, Visit&& visit) const {
-    for (const int f : complex_.cell(cell).faces) {
-      const auto& face = complex_.face(f);
-      const bool outwards = face.cells[0] == cell;
-      for_each_fan_triangle(complex_.loop_points(f), face.master,
-                            [&](const Vec3& a, const Vec3& b, const Vec3& m) {
-                              outwards ? visit(a, b, m) : visit(b, a, m);
-                            });
-    }
-  }
-
-  bool seen_from_centroid(int cell) const {
-    const Vec3 origin = tess_.seeds[cell];
-    double volume = 0;
-    Vec3 moment = Vec3::Zero();
-    for_each_triangle(cell, [&](const Vec3& a, const Vec3& b, const Vec3& m) {
-      const Vec3 p = a - origin, q = b - origin, r = m - origin;
-      const double part = p.dot(q.cross(r));
-      volume += part;
-      moment += part * (p + q + r) / 4;
-    });
-    if (!(volume > 0)) return false;
-    const Vec3 centroid = origin + moment / volume;
-    bool seen = true;
-    for_each_triangle(cell, [&](const Vec3& a, const Vec3& b, const Vec3& m) {
-      if (!((a - centroid).dot((b - centroid).cross(m - centroid)) > 0)) seen = false;
-    });
-    return seen;
-  }
-
-  /// Weight of the distance to the mid point against that to one plane, squared.
-  static constexpr double towards_mid_point = 1e-4;
+  /// Squared chord of a hundredth of a degree or so: faces are flat.
+  static constexpr double negligible_fault = 3e-8;
 
   Tessellation& tess_;
   CellComplex complex_;
-  double max_length_, max_fault_;
+  RegularisationOptions options_;
+  double max_length_, max_fault_, search_fault_;
   double polyline_length_, polyline_cosine_;
   bool polylines_ = false;  ///< whether deletions may leave polylines
+  RegularisationReport report_;
 };
 
-}  // namespace
-
-RegularisationReport regularise(Tessellation& tessellation, const RegularisationOptions& options) {
+void check_options(const RegularisationOptions& options) {
   if (!(options.max_edge_length >= 0) || !std::isfinite(options.max_edge_length))
     throw core::InputError(
         fmt::format("max_edge_length = {}: must be a length, 0 for none", options.max_edge_length));
@@ -295,10 +312,19 @@ RegularisationReport regularise(Tessellation& tessellation, const Regularisation
   if (!(options.polyline_angle >= 0 && options.polyline_angle < 90))
     throw core::InputError(
         fmt::format("polyline_angle = {}: must be 0 to below 90 degrees", options.polyline_angle));
-  // Without any distortion nothing can be deleted, but for edges among triangles only: none.
-  auto effective = options;
-  if (options.max_flatness_fault == 0) effective.max_edge_length = 0;
-  return Regulariser(tessellation, effective).run();
+  if (!(options.position_search >= 1 && options.position_search <= 4))
+    throw core::InputError(
+        fmt::format("position_search = {}: must be 1 to 4", options.position_search));
+  if (options.flattening_sweeps < 0)
+    throw core::InputError(
+        fmt::format("flattening_sweeps = {}: must be 0 or more", options.flattening_sweeps));
+}
+
+}  // namespace
+
+RegularisationReport regularise(Tessellation& tessellation, const RegularisationOptions& options) {
+  check_options(options);
+  return Regulariser(tessellation, options).run();
 }
 
 }  // namespace polyslip::mesh

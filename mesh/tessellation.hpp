@@ -30,10 +30,24 @@ struct RegularisationOptions {
   double max_flatness_fault = 20.0;  ///< f_max [degrees]; 0: none
   /// Beyond the paper, which never lets two faces of a cell share a polyline of two edges: edges
   /// below this share of l_max, and short ones opposite to a corner of a triangular face below this
-  /// angle [degrees], may be deleted although they leave one, for they spoil the mesh most. 0 and
-  /// 0: the paper's regularisation.
+  /// angle [degrees], may be deleted although they leave one, for they spoil the mesh most.
   double polyline_share = 0.2;
   double polyline_angle = 8.0;
+  /// Beyond the paper: where the least-squares position of a new vertex (eq. 2) leaves a flatness
+  /// fault above f_max, but not above this times f_max, a better one is sought nearby; 1: never.
+  double position_search = 1.2;
+  /// Beyond the paper: so many times, once nothing more can be deleted, vertices move to where
+  /// their faces are flatter; then deletion goes on.
+  int flattening_sweeps = 1;
+
+  /// The paper's rules: the same, without what goes beyond them.
+  RegularisationOptions as_in_the_paper() const {
+    RegularisationOptions o = *this;
+    o.polyline_share = o.polyline_angle = 0;
+    o.position_search = 1;
+    o.flattening_sweeps = 0;
+    return o;
+  }
 };
 
 /// A box [0, size] cut into cells with shared vertices, edges and faces.
@@ -57,9 +71,15 @@ struct Tessellation {
 struct RegularisationReport {
   int edges_before = 0, short_before = 0, short_after = 0;
   int deleted = 0, loops = 0;
-  /// Short edges that stay: the faces would be too distorted; a cell would fold, lose its topology
-  /// or get a polyline.
-  int refused_flatness = 0, refused_topology = 0;
+  /// Why short edges stay; they add up to short_after.
+  struct Refused {
+    int flatness = 0;  ///< a face would be distorted beyond f_max
+    int fold = 0;      ///< a face or a cell would fold
+    int topology = 0;  ///< a cell would not stay a polyhedron of four faces or more
+    int polyline = 0;  ///< two faces of a cell would share a polyline of two edges
+    int domain = 0;    ///< the domain would lose a corner or an edge
+    int sum() const { return flatness + fold + topology + polyline + domain; }
+  } refused;
   double max_flatness_fault = 0;  ///< degrees, over all faces afterwards
 };
 

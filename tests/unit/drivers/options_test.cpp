@@ -123,6 +123,8 @@ max_edge_length = 0.26
 max_flatness_fault = 10
 polyline_share = 0
 polyline_angle = 5
+position_search = 1.1
+flattening_sweeps = 2
 [mesh]
 length_unit = "file"
 element_size = 0.3
@@ -173,6 +175,8 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.regularisation.max_flatness_fault, 10);
   EXPECT_EQ(o.regularisation.polyline_share, 0);
   EXPECT_EQ(o.regularisation.polyline_angle, 5);
+  EXPECT_EQ(o.regularisation.position_search, 1.1);
+  EXPECT_EQ(o.regularisation.flattening_sweeps, 2);
   EXPECT_EQ(o.mesh.element_size, 0.3);
   EXPECT_EQ(o.mesh.progression_factor, 1.5);
   EXPECT_EQ(o.mesh.meshers, std::vector<std::string>{"netgen"});

@@ -75,7 +75,7 @@ TEST(MshReader, FindsTheTopologyOfSlabs) {
 TEST(MshReader, FindsTheTopologyOfAPolycrystal) {
   const auto pool = MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
   auto tessellation = voronoi_tessellation({.grains = 12, .seed = 5});
-  regularise(tessellation, {.polyline_share = 0, .polyline_angle = 0});
+  regularise(tessellation, RegularisationOptions{}.as_in_the_paper());
   for (const int order : {1, 2}) {
     MeshingOptions options;
     options.element_size = 0.8;
