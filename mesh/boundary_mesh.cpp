@@ -54,6 +54,7 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
       vertices_(geometry.vertices),
       edges_(geometry.edges.size()),
       faces_(geometry.faces.size()),
+      cut_arcs_(geometry.edges.size()),
       edge_copied_(geometry.edges.size(), false),
       face_copied_(geometry.faces.size(), false),
       edge_stale_(geometry.edges.size(), true),
@@ -62,8 +63,10 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
   find_planes();
   for (const auto& shape : geometry.edges)
     edge_lengths_.push_back(CurvedEdge(shape, scale).length());
-  vertex_sizes_ = vertex_sizes(geometry.topology, edge_lengths_, options.element_size,
-                               options.progression_factor);
+  const auto sizes = vertex_sizes(geometry.topology, edge_lengths_, options.element_size,
+                                  options.progression_factor);
+  for (const auto& edge : geometry.topology.edges)
+    end_sizes_.push_back({sizes[edge.vertices[0]], sizes[edge.vertices[1]]});
 }
 
 void BoundaryMesher::find_planes() {
@@ -112,10 +115,8 @@ bool BoundaryMesher::copy(int face) {
 }
 
 void BoundaryMesher::mesh_edge(int edge) {
-  const auto& ends = geometry_.topology.edges[edge].vertices;
-  const CurvedEdge curve(geometry_.edges[edge], scale_);
-  place_edge(edge, edge_nodes(curve.length(), vertex_sizes_[ends[0]], vertex_sizes_[ends[1]],
-                              options_.element_size, options_.progression_factor));
+  if (!cut_arcs_[edge].empty()) return place_edge(edge, cut_arcs_[edge]);
+  place_edge(edge, graded_arcs(edge, 1));
 }
 
 Vec3 BoundaryMesher::edge_point(int edge, const CurvedEdge& curve, double arc) const {
@@ -196,10 +197,7 @@ std::vector<double> BoundaryMesher::node_sizes(const BoundaryNumbers& numbers) c
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const auto& nodes = edges_[e].nodes;
     const int last = static_cast<int>(nodes.size()) - 1;
-    const auto number = [&](int i) {
-      if (i == 0 || i == last) return geometry_.topology.edges[e].vertices[i == 0 ? 0 : 1];
-      return numbers.edge_first[e] + i - 1;
-    };
+    const auto number = [&](int i) { return number_of(static_cast<int>(e), i, numbers); };
     for (int i = 0; i < last; ++i) {
       const double length = (nodes[i + 1] - nodes[i]).cwiseProduct(scale_).norm();
       for (int n : {number(i), number(i + 1)}) sizes[n] = std::max(sizes[n], length);
@@ -337,11 +335,7 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
   bool again = true;
   while (again) {
     again = false;
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-      if (!edge_stale_[e]) continue;
-      const int edge = static_cast<int>(e);
-      edge_copied_[e] ? copy_edge(edge) : mesh_edge(edge);
-    }
+    mesh_edges();
     for (std::size_t f = 0; f < faces.size(); ++f)
       if (std::any_of(faces[f].edges.begin(), faces[f].edges.end(),
                       [&](int e) { return edge_stale_[e]; })) {
@@ -402,10 +396,18 @@ bool BoundaryMesher::forbid_shared_edges() {
   return any;
 }
 
+int BoundaryMesher::number_of(int edge, int node, const BoundaryNumbers& numbers) const {
+  const int last = static_cast<int>(edges_[edge].nodes.size()) - 1;
+  if (node == 0 || node == last) return geometry_.topology.edges[edge].vertices[node == 0 ? 0 : 1];
+  return numbers.edge_first[edge] + node - 1;
+}
+
 std::vector<int> BoundaryMesher::update() {
   std::vector<char> changed(faces_.size(), false);
   constexpr int rounds = 16;  // each forbids more pairs of nodes, or copies a face
+  constexpr int cuts = 3;
   mesh_faces(changed);
+  for (int i = 0; i < cuts && cut_under_flat_triangles(changed); ++i) mesh_faces(changed);
   for (int i = 0; forbid_shared_edges(); ++i) {
     if (i == rounds) {
       const auto stale = std::find(face_stale_.begin(), face_stale_.end(), true);

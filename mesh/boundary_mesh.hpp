@@ -79,6 +79,9 @@ class BoundaryMesher {
   std::vector<core::Vec3> positions(const BoundaryNumbers& numbers) const;
   /// Numbers of a face's local nodes.
   std::vector<int> face_nodes(int face, const BoundaryNumbers& numbers) const;
+  /// Largest ratio of the lengths of adjacent 1D elements, along edges and across vertices, copied
+  /// edges left out.
+  double largest_progression() const;
   /// Largest angle of a face's surface to its mean plane, radians.
   double distortion(int face) const;
 
@@ -95,8 +98,25 @@ class BoundaryMesher {
   std::string mesh_face(int face, const std::vector<core::Vec3>& positions,
                         const std::vector<double>& sizes, const BoundaryNumbers& numbers);
   std::string name(int face) const;
+  /// Number of a node of an edge, ends included.
+  int number_of(int edge, int node, const BoundaryNumbers& numbers) const;
   void copy_face_mesh(int face);
   void mesh_faces(std::vector<char>& changed);
+  /// Puts nodes under the apices of triangles that are flat over a 1D element (P.30); whether there
+  /// were any. Their edges are stale then.
+  bool cut_under_flat_triangles(const std::vector<char>& faces);
+  void cut_edge(int edge, double arc);
+  void mesh_edges();
+  /// Nodes by the sizes at the edge's ends, `least_count` elements or more.
+  std::vector<double> graded_arcs(int edge, int least_count) const;
+  std::array<double, 2> end_elements(int edge) const;
+  /// Least length of the elements at each vertex, those of copied edges left out.
+  std::vector<double> least_at_vertices() const;
+  /// More elements for edges whose elements are longer than p_l times another's at their vertex;
+  /// whether there were any.
+  bool balance_vertices();
+  /// 1D elements along a face's loop: edge and element of it; element k begins at local node k.
+  std::vector<std::array<int, 2>> loop_elements(int face) const;
   /// Inner edges that join the same two nodes as another inner edge or a 1D element are forbidden;
   /// whether there were any.
   bool forbid_shared_edges();
@@ -107,9 +127,11 @@ class BoundaryMesher {
   std::array<std::optional<double>, 6> planes_;  ///< coordinate of each domain face that is flat
   std::vector<unsigned> vertex_planes_, edge_planes_;  ///< bit i: lies in domain face i
   std::vector<core::Vec3> vertices_;
-  std::vector<double> edge_lengths_, vertex_sizes_;
+  std::vector<double> edge_lengths_;
+  std::vector<std::array<double, 2>> end_sizes_;  ///< [edges] sizes that its grading starts from
   std::vector<EdgeMesh> edges_;
   std::vector<FaceMesh> faces_;
+  std::vector<std::vector<double>> cut_arcs_;  ///< [edges] nodes if some were put in; else empty
   std::vector<char> edge_copied_, face_copied_, edge_stale_, face_stale_;
   std::vector<std::vector<std::array<int, 2>>> forbidden_;  ///< [faces] local numbers
 };

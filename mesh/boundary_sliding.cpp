@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "core/parallel.hpp"
@@ -56,6 +57,7 @@ class BoundarySlider {
         positions_(boundary.positions(numbers_)),
         stars_(star_mesh(volumes)) {
     for (const auto& e : boundary.edges()) arcs_.push_back(e.arcs);
+    find_vertex_edges();
     colour_edges();
     colour_faces();
   }
@@ -162,7 +164,10 @@ class BoundarySlider {
         arcs[k] = to;
         const double after = progression(arcs, k);
         arcs[k] = from;
-        if (!(after <= std::max(progression_, progression(arcs, k)))) return std::nullopt;
+        const double ends_after = end_progression(edge, k, to);
+        if (!(after <= std::max(progression_, progression(arcs, k)) &&
+              ends_after <= std::max(progression_, end_progression(edge, k, from))))
+          return std::nullopt;
         return boundary_.edge_point(edge, curve, to);
       });
       if ((positions_[node] - boundary_.edge_point(edge, curve, from)).norm() > 0) arcs[k] = to;
@@ -179,6 +184,42 @@ class BoundarySlider {
       worst = std::max({worst, a / b, b / a});
     }
     return worst;
+  }
+
+  /// Largest ratio of the lengths of the edge's end elements, with node k at `arc`, to those of
+  /// other edges at its vertices.
+  double end_progression(int edge, std::size_t k, double arc) const {
+    const auto& arcs = arcs_[edge];
+    const auto& ends = topology_.edges[edge].vertices;
+    double worst = 1;
+    if (k == 1) worst = std::max(worst, progression_at(ends[0], edge, arc));
+    if (k + 2 == arcs.size())
+      worst = std::max(worst, progression_at(ends[1], edge, arcs.back() - arc));
+    return worst;
+  }
+
+  double progression_at(int vertex, int edge, double length) const {
+    double worst = 1;
+    for (int i = vertex_first_[vertex]; i < vertex_first_[vertex + 1]; ++i) {
+      const auto& arcs = arcs_[vertex_edges_[i]];
+      if (vertex_edges_[i] == edge || arcs.empty()) continue;
+      const bool from = topology_.edges[vertex_edges_[i]].vertices[0] == vertex;
+      const double other = from ? arcs[1] : arcs.back() - arcs[arcs.size() - 2];
+      worst = std::max({worst, length / other, other / length});
+    }
+    return worst;
+  }
+
+  void find_vertex_edges() {
+    vertex_first_.assign(topology_.vertex_count + 1, 0);
+    for (const auto& e : topology_.edges)
+      for (const int v : e.vertices) ++vertex_first_[v + 1];
+    std::partial_sum(vertex_first_.begin(), vertex_first_.end(), vertex_first_.begin());
+    vertex_edges_.resize(vertex_first_.back());
+    auto next = vertex_first_;
+    for (std::size_t e = 0; e < topology_.edges.size(); ++e)
+      for (const int v : topology_.edges[e].vertices)
+        vertex_edges_[next[v]++] = static_cast<int>(e);
   }
 
   void slide_face(int face) {
@@ -207,6 +248,7 @@ class BoundarySlider {
   std::vector<Vec3> positions_;  ///< by number, unscaled
   StarMesh stars_;               ///< scaled
   std::vector<std::vector<double>> arcs_;
+  std::vector<int> vertex_first_, vertex_edges_;  ///< edges of vertex v: [first[v], first[v + 1])
   std::vector<std::vector<int>> edge_colours_, face_colours_;
 };
 

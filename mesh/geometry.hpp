@@ -59,6 +59,7 @@ struct MeshingReport {
   int straightened = 0;             ///< mid nodes pulled towards their chord to keep det J > 0
   int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                ///< mean over grains of eq. (5)
+  double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
 };
 
 /// What had to be given up of the surfaces, in one line: mid nodes pulled in, nodes put on a

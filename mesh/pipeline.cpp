@@ -67,6 +67,7 @@ class Pipeline {
       slide_boundary(boundary_, volumes, options_.progression_factor,
                      core::thread_count(options_.jobs));
     Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
+    check_progression();
     report_.straightened = mend_curved_elements(mesh);
     if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);
     fill_report();
@@ -146,6 +147,17 @@ class Pipeline {
       any |= copied;
     }
     return any;
+  }
+
+  /// Adjacent 1D lengths are within p_l. Across vertices that can be had from p_l = 2 on: below, a
+  /// third of an edge may be too short where a half of it is too long.
+  void check_progression() {
+    report_.progression = boundary_.largest_progression();
+    constexpr double reachable = 2.0, rounding = 1e-6;
+    const double p = options_.progression_factor;
+    if (p >= reachable && !(report_.progression <= p * (1 + rounding)))
+      throw core::InternalError(fmt::format(
+          "meshing: adjacent 1D lengths differ by {:.6g}, p_l is {}", report_.progression, p));
   }
 
   [[noreturn]] void give_up(int grain) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
 
@@ -138,7 +139,7 @@ std::vector<double> vertex_sizes(const Topology& topology, const std::vector<dou
 // count N of the grading, whose size h changes by no more than p^(N/n) from one to the next as |h'|
 // <= ln p; so the second try always does.
 std::vector<double> edge_nodes(double length, double from, double to, double element_size,
-                               double progression_factor) {
+                               double progression_factor, int least_count) {
   const Grading grading(length, from, to, element_size, progression_factor);
   const double count = grading.count();
   if (!(length > 0 && from > 0 && to > 0 && count < 1e8))
@@ -147,7 +148,7 @@ std::vector<double> edge_nodes(double length, double from, double to, double ele
         length, from, to, element_size, progression_factor, count));
   int n = std::max(1, static_cast<int>(count));
   if (count * count > static_cast<double>(n) * (n + 1)) ++n;
-  for (; n < count + 2; ++n) {
+  for (n = std::max(n, least_count); n < count + 2 + least_count; ++n) {
     std::vector<double> s(n + 1, 0.0);
     for (int i = 1; i < n; ++i) s[i] = grading.at(count * i / n);
     s[n] = length;
@@ -156,6 +157,31 @@ std::vector<double> edge_nodes(double length, double from, double to, double ele
   throw core::InternalError(
       fmt::format("1D meshing: p_l = {} does not hold on an edge of length {} with sizes {} and {}",
                   progression_factor, length, from, to));
+}
+
+double largest_progression(const std::vector<double>& arcs) {
+  double worst = 1;
+  for (std::size_t i = 2; i < arcs.size(); ++i) {
+    const double a = arcs[i - 1] - arcs[i - 2], b = arcs[i] - arcs[i - 1];
+    if (!(a > 0 && b > 0)) return std::numeric_limits<double>::infinity();
+    worst = std::max({worst, a / b, b / a});
+  }
+  return worst;
+}
+
+std::vector<double> with_node_at(const std::vector<double>& arcs, double arc,
+                                 const std::vector<double>& graded, double progression_factor) {
+  constexpr int steps = 8;
+  std::vector<double> wanted = arcs;
+  wanted.insert(std::upper_bound(wanted.begin(), wanted.end(), arc), arc);
+  for (int step = 0; step < steps; ++step) {
+    std::vector<double> mixed = graded;
+    const double share = static_cast<double>(step) / steps;
+    for (std::size_t i = 1; i + 1 < mixed.size(); ++i)
+      mixed[i] = share * graded[i] + (1 - share) * wanted[i];
+    if (largest_progression(mixed) <= progression_factor) return mixed;
+  }
+  return graded;
 }
 
 }  // namespace polyslip::mesh

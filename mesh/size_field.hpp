@@ -35,8 +35,18 @@ std::vector<double> vertex_sizes(const Topology& topology, const std::vector<dou
 
 /// Arc lengths 0 ... length of the nodes of an edge whose vertices have the sizes `from` and `to`:
 /// elements grow by p_l from the vertices up to c_l; adjacent ones differ by no more than p_l (to
-/// 1e-9). Throws RecoverableError for lengths or sizes that are not positive.
+/// 1e-9). `least_count` or more elements. Throws RecoverableError for lengths or sizes that are not
+/// positive.
 std::vector<double> edge_nodes(double length, double from, double to, double element_size,
-                               double progression_factor);
+                               double progression_factor, int least_count = 1);
+
+/// Largest ratio of the lengths of adjacent elements; infinite if nodes are out of order.
+double largest_progression(const std::vector<double>& arcs);
+
+/// Puts a node at `arc` into an edge whose nodes are at `arcs`. If adjacent lengths would then
+/// differ by more than p_l, all nodes go as far towards `graded`, nodes of an edge with as many
+/// elements that keeps p_l, as it takes.
+std::vector<double> with_node_at(const std::vector<double>& arcs, double arc,
+                                 const std::vector<double>& graded, double progression_factor);
 
 }  // namespace polyslip::mesh

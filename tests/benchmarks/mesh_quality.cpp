@@ -30,6 +30,7 @@ struct Options {
   mesh::RegularisationOptions regularisation;
   mesh::MeshingOptions meshing;
   std::string csv;
+  int worst = 0;  // elements to be listed
 };
 
 /// Figures of one case; CPU in ms a grain.
@@ -68,6 +69,51 @@ void measure_elements(const mesh::Mesh& mesh, double element_size, Figures& figu
   }
 }
 
+/// The worst elements: radius ratio, grain, for each corner v(ertex), e(dge), f(ace), i(nside); and
+/// the least angle of tessellation faces at the corners that are vertices.
+void list_worst(const mesh::Mesh& mesh, int count) {
+  std::vector<char> kind(mesh.nodes.size(), 'i');
+  for (const auto& t : mesh.triangles)
+    for (const int n : t) kind[n] = 'f';
+  for (const auto& l : mesh.lines)
+    for (const int n : l) kind[n] = 'e';
+  std::vector<double> angle(mesh.nodes.size(), 180);
+  for (const int n : mesh.vertex_nodes) kind[n] = 'v';
+  for (int f = 0; f < static_cast<int>(mesh.topology.faces.size()); ++f) {
+    const auto v = mesh.topology.face_vertices(f);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      const int n = mesh.vertex_nodes[v[i]];
+      const core::Vec3 a = mesh.nodes[mesh.vertex_nodes[v[(i + 1) % v.size()]]] - mesh.nodes[n];
+      const core::Vec3 b =
+          mesh.nodes[mesh.vertex_nodes[v[(i + v.size() - 1) % v.size()]]] - mesh.nodes[n];
+      angle[n] = std::min(angle[n], std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / M_PI);
+    }
+  }
+  std::vector<std::pair<double, int>> order;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto& t = mesh.tetrahedra[e];
+    order.emplace_back(
+        mesh::radius_ratio(mesh.nodes[t[0]], mesh.nodes[t[1]], mesh.nodes[t[2]], mesh.nodes[t[3]]),
+        e);
+  }
+  std::sort(order.begin(), order.end());
+  for (int i = 0; i < count; ++i) {
+    const auto& t = mesh.tetrahedra[order[i].second];
+    std::string kinds;
+    double least = 180;
+    for (int k = 0; k < 4; ++k) {
+      kinds += kind[t[k]];
+      least = std::min(least, angle[t[k]]);
+    }
+    std::sort(kinds.begin(), kinds.end());
+    std::string lengths;
+    for (const auto& [a, b] : mesh::tetrahedron_edges)
+      lengths += fmt::format(" {:.3f}", (mesh.nodes[t[a]] - mesh.nodes[t[b]]).norm());
+    fmt::print("  {:.4f} grain {:5d} {} corner angle {:5.1f} edges{}\n", order[i].first,
+               mesh.tetrahedron_cell[order[i].second] + 1, kinds, least, lengths);
+  }
+}
+
 Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) {
   Figures f;
   mesh::PolycrystalOptions polycrystal;
@@ -94,6 +140,7 @@ Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) 
   f.nodes = mesh.node_count();
   f.peak_mb = core::peak_rss_mb();
   measure_elements(mesh, wanted.element_size, f);
+  if (options.worst > 0) list_worst(mesh, options.worst);
   for (std::size_t i = 0; i < report.wins.size(); ++i)
     f.wins += fmt::format("{}{} {}", i ? ", " : "", meshing.meshers[i], report.wins[i]);
   return f;
@@ -143,6 +190,7 @@ int main(int argc, char** argv) {
   app.add_flag("--slide,!--no-slide", options.meshing.slide_boundary,
                "nodes slide in faces and along edges");
   app.add_option("--jobs", options.meshing.jobs);
+  app.add_option("--worst", options.worst, "list so many of the worst elements");
   app.add_option("--csv", options.csv, "file for the table");
   CLI11_PARSE(app, argc, argv);
   const auto pool = mesh::MesherPool::start(options.worker);

@@ -95,6 +95,32 @@ TEST_F(BoundarySliding, KeepsTheProgressionAlongEdges) {
   EXPECT_GT(pairs, 100);
 }
 
+TEST_F(BoundarySliding, KeepsTheProgressionAcrossVertices) {
+  for (const double size : {0.5, 0.25}) {
+    const auto geometry = geometry_of(polycrystal(20, 5));
+    MeshingOptions options;
+    options.element_size = size;
+    const Mesh m = mesh(geometry, options);
+    const auto length = [&](std::size_t i) {
+      return (m.nodes[m.lines[i][1]] - m.nodes[m.lines[i][0]]).norm();
+    };
+    std::vector<double> least(m.topology.vertex_count, 1e9), most(m.topology.vertex_count, 0);
+    for (std::size_t l = 0; l < m.lines.size(); ++l)
+      for (int i = 0; i < 2; ++i)
+        for (int v : m.topology.edges[m.line_edge[l]].vertices)
+          if (m.lines[l][i] == m.vertex_nodes[v]) {
+            least[v] = std::min(least[v], length(l));
+            most[v] = std::max(most[v], length(l));
+          }
+    double worst = 0;
+    for (std::size_t v = 0; v < least.size(); ++v) {
+      EXPECT_LE(most[v], 2 * least[v] * (1 + 1e-8));
+      worst = std::max(worst, most[v] / least[v]);
+    }
+    EXPECT_GT(worst, 1.5);
+  }
+}
+
 TEST_F(BoundarySliding, IsTheSameForAnyNumberOfThreads) {
   const auto geometry = geometry_of(polycrystal(30, 6));
   MeshingOptions options;

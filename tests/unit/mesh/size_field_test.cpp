@@ -21,6 +21,26 @@ TEST(EdgeNodes, AreEvenWhereNothingIsSmall) {
   EXPECT_EQ(edge_nodes(1e-3, 0.25, 0.25, 0.25, 2).size(), 2u);
 }
 
+TEST(EdgeNodes, AreAsManyAsAskedFor) {
+  for (const int count : {1, 2, 3, 7}) {
+    const auto s = edge_nodes(0.3, 0.25, 0.1, 0.25, 2, count);
+    EXPECT_GE(s.size(), count + 1u);
+    EXPECT_LE(largest_progression(s), 2);
+  }
+  EXPECT_EQ(edge_nodes(0.3, 0.25, 0.25, 0.25, 2, 5).size(), 6u);
+}
+
+TEST(NodesPutIn, StayWhereTheyAreAskedForOrGoAsFarAsTheProgressionNeeds) {
+  const std::vector<double> arcs{0, 1}, graded{0, 0.5, 1};
+  EXPECT_EQ(with_node_at(arcs, 0.4, graded, 2)[1], 0.4);
+  const auto moved = with_node_at(arcs, 0.1, graded, 2);
+  ASSERT_EQ(moved.size(), 3u);
+  EXPECT_LE(largest_progression(moved), 2);
+  EXPECT_NEAR(moved[1], 1.0 / 3, 0.05);
+  EXPECT_TRUE(std::isinf(largest_progression({0, 0.5, 0.4, 1})));
+  EXPECT_TRUE(std::isinf(largest_progression({0, std::nan(""), 1})));
+}
+
 TEST(EdgeNodes, StartFromTheSizeOfTheVertexAndGrowByTheFactor) {
   // 0.1 (1 + 2 + 4) = 0.7, then 0.8 each.
   const auto s = edge_nodes(0.7 + 4 * 0.8, 0.1, 0.8, 0.8, 2);

@@ -1,0 +1,143 @@
+// Numbers of elements and nodes of edges beyond their own grading: progression across vertices, and
+// nodes under triangles that are flat over a 1D element.
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/boundary_mesh.hpp"
+#include "mesh/size_field.hpp"
+
+namespace polyslip::mesh {
+
+namespace {
+
+using core::Vec3;
+
+/// A triangle is flat over a 1D element if its height is below this share of the nearer end's
+/// distance from the foot: the tangent of the greater of its acute angles.
+constexpr double flat_height = 0.35;
+/// Rounds in which the elements at vertices are made alike.
+constexpr int balancing_rounds = 100;
+
+}  // namespace
+
+std::vector<double> BoundaryMesher::graded_arcs(int edge, int least_count) const {
+  return edge_nodes(edge_lengths_[edge], end_sizes_[edge][0], end_sizes_[edge][1],
+                    options_.element_size, options_.progression_factor, least_count);
+}
+
+void BoundaryMesher::mesh_edges() {
+  for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+    if (!edge_stale_[e]) continue;
+    edge_copied_[e] ? copy_edge(e) : mesh_edge(e);
+  }
+  for (int i = 0; i < balancing_rounds && balance_vertices(); ++i) {
+  }
+}
+
+std::array<double, 2> BoundaryMesher::end_elements(int edge) const {
+  const auto& s = edges_[edge].arcs;
+  return {s[1], s.back() - s[s.size() - 2]};
+}
+
+std::vector<double> BoundaryMesher::least_at_vertices() const {
+  std::vector<double> least(geometry_.topology.vertex_count,
+                            std::numeric_limits<double>::infinity());
+  for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+    if (edge_copied_[e]) continue;
+    for (int i = 0; i < 2; ++i) {
+      double& l = least[geometry_.topology.edges[e].vertices[i]];
+      l = std::min(l, end_elements(e)[i]);
+    }
+  }
+  return least;
+}
+
+bool BoundaryMesher::balance_vertices() {
+  const auto least = least_at_vertices();
+  const double p = options_.progression_factor;
+  bool any = false;
+  for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+    if (edge_copied_[e]) continue;
+    bool refine = false;
+    for (int i = 0; i < 2; ++i) {
+      const double most = p * least[geometry_.topology.edges[e].vertices[i]];
+      if (!(end_elements(e)[i] > most * (1 + 1e-9))) continue;
+      end_sizes_[e][i] = std::min(end_sizes_[e][i], most);
+      refine = true;
+    }
+    if (!refine) continue;
+    cut_arcs_[e] = graded_arcs(e, static_cast<int>(edges_[e].arcs.size()));
+    place_edge(e, cut_arcs_[e]);
+    edge_stale_[e] = any = true;
+  }
+  return any;
+}
+
+double BoundaryMesher::largest_progression() const {
+  const auto least = least_at_vertices();
+  double worst = 1;
+  for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+    if (edge_copied_[e]) continue;
+    worst = std::max(worst, mesh::largest_progression(edges_[e].arcs));
+    for (int i = 0; i < 2; ++i)
+      worst = std::max(worst, end_elements(e)[i] / least[geometry_.topology.edges[e].vertices[i]]);
+  }
+  return worst;
+}
+
+std::vector<std::array<int, 2>> BoundaryMesher::loop_elements(int face) const {
+  const auto& f = geometry_.topology.faces[face];
+  std::vector<std::array<int, 2>> elements;
+  for (std::size_t i = 0; i < f.edges.size(); ++i) {
+    const int count = static_cast<int>(edges_[f.edges[i]].nodes.size()) - 1;
+    for (int k = 0; k < count; ++k)
+      elements.push_back({f.edges[i], f.forward[i] ? k : count - 1 - k});
+  }
+  return elements;
+}
+
+void BoundaryMesher::cut_edge(int edge, double arc) {
+  const auto& arcs = edges_[edge].arcs;
+  const auto graded = graded_arcs(edge, static_cast<int>(arcs.size()));
+  if (graded.size() != arcs.size() + 1) return;
+  cut_arcs_[edge] = with_node_at(arcs, arc, graded, options_.progression_factor);
+  edge_stale_[edge] = true;
+}
+
+bool BoundaryMesher::cut_under_flat_triangles(const std::vector<char>& faces) {
+  const auto numbers_now = numbers();
+  const auto x = positions(numbers_now);
+  bool any = false;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const int f = static_cast<int>(i);
+    if (!faces[i] || face_copied_[f]) continue;
+    const auto loop = loop_elements(f);
+    const auto nodes = face_nodes(f, numbers_now);
+    const int n = static_cast<int>(loop.size());
+    const auto at = [&](int local) -> Vec3 {
+      if (local < n) return x[nodes[local]].cwiseProduct(scale_);
+      return faces_[f].inner_nodes[local - n].cwiseProduct(scale_);
+    };
+    for (const auto& t : faces_[f].triangles)
+      for (int k = 0; k < 3; ++k) {
+        const int a = t[k], b = t[(k + 1) % 3];
+        if (a >= n || b != (a + 1) % n) continue;
+        const Vec3 base = at(b) - at(a), side = at(t[(k + 2) % 3]) - at(a);
+        const double foot = side.dot(base) / base.squaredNorm();
+        const double height = side.cross(base).norm() / base.squaredNorm();
+        const auto [edge, element] = loop[a];
+        if (!(height < flat_height * std::min(foot, 1 - foot)) || edge_stale_[edge] ||
+            edge_copied_[edge])
+          continue;
+        const auto& arcs = edges_[edge].arcs;
+        const bool forward = nodes[a] == number_of(edge, element, numbers_now);
+        const double share = forward ? foot : 1 - foot;
+        cut_edge(edge, (1 - share) * arcs[element] + share * arcs[element + 1]);
+        any |= edge_stale_[edge] != 0;
+      }
+  }
+  return any;
+}
+
+}  // namespace polyslip::mesh
