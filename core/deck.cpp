@@ -63,6 +63,15 @@ Deck::Table Deck::table(const std::string& section, const std::string& help) {
   return {*impl_, section};
 }
 
+std::vector<Deck::Table> Deck::tables(const std::string& list, const std::string& help) {
+  std::vector<Table> found;
+  for (int number = 1;; ++number) {
+    const std::string name = fmt::format("{} {}", list, number);
+    if (impl_->find_table(name) == nullptr) return found;
+    found.push_back(table(name, help));
+  }
+}
+
 void Deck::finish() const {
   auto faults = impl_->key_faults;
   for (auto& fault : impl_->unknown()) faults.push_back(std::move(fault));

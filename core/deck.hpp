@@ -120,6 +120,9 @@ class Deck {
     /// there are faults of single keys, which come first.
     void fault(const std::string& key, const std::string& what);
 
+    /// As declared.
+    const std::string& name() const { return section_; }
+
    private:
     friend class Deck;
     Table(Impl& deck, std::string section) : deck_(&deck), section_(std::move(section)) {}
@@ -138,6 +141,9 @@ class Deck {
 
   /// Declares a section, with a sentence for the reference page.
   Table table(const std::string& section, const std::string& help = "");
+  /// Declares the tables of a list, [[section.list]]: as many as the deck has, in its order. Their
+  /// names, in messages and for the functions below, are "section.list 1" and so on.
+  std::vector<Table> tables(const std::string& list, const std::string& help = "");
   /// `Table::given`, `Table::where` and `Table::fault` for checks between tables.
   bool given(const std::string& section, const std::string& key) const;
   std::string where(const std::string& section, const std::string& key) const;

@@ -30,6 +30,13 @@ std::string plain(const std::string& text) {
 /// Text as code inside a cell.
 std::string code(const std::string& text) { return text.empty() ? "" : "`" + text + "`"; }
 
+/// "[section]", or "[[section.list]]" of one of a list.
+std::string heading(const std::string& section) {
+  const auto space = section.find(' ');
+  return space == std::string::npos ? "[" + section + "]"
+                                    : "[[" + section.substr(0, space) + "]]";
+}
+
 std::string fallback_cell(const Declaration& d) {
   if (!d.fallback.empty()) return code(d.fallback);
   return d.optional ? "none" : "required";
@@ -40,7 +47,7 @@ std::string fallback_cell(const Declaration& d) {
 std::string Deck::resolved() const {
   std::string text;
   for (const auto& [section, help] : impl_->sections) {
-    text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
+    text += fmt::format("{}{}\n", text.empty() ? "" : "\n", heading(section));
     for (const auto& d : impl_->declarations) {
       if (d.section != section) continue;
       const std::string line =
@@ -61,7 +68,7 @@ std::string Deck::fingerprint() const {
 std::string Deck::reference() const {
   std::string text;
   for (const auto& [section, help] : impl_->sections) {
-    text += fmt::format("{}## [{}]\n\n", text.empty() ? "" : "\n", section);
+    text += fmt::format("{}## {}\n\n", text.empty() ? "" : "\n", heading(section));
     if (!help.empty()) text += plain(help) + "\n\n";
     text += "| key | type | unit | default | allowed | meaning |\n|---|---|---|---|---|---|\n";
     for (const auto& d : impl_->declarations)

@@ -20,7 +20,7 @@ inline std::uint64_t splitmix64(std::uint64_t& state) {
 
 /// Which draws belong together. Streams of one seed are independent of each other, so that a change
 /// of how many numbers one use takes leaves the other uses alone.
-enum class Stream : std::uint64_t { seeds = 1, orientations = 2, tests = 1000 };
+enum class Stream : std::uint64_t { seeds = 1, orientations = 2, texture = 20, tests = 1000 };
 
 /// xoshiro256** (Blackman, Vigna 2018), seeded by splitmix64 from (seed, stream).
 class Random {

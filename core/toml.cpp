@@ -39,6 +39,26 @@ TomlEntry entry(const toml::key& key, const toml::node& node) {
   return {std::string(key.str()), position(key.source()), convert(node)};
 }
 
+TomlTable table_of(std::string name, Position at, const toml::table& table) {
+  TomlTable section{std::move(name), at, {}};
+  for (const auto& [key, value] : table) section.entries.push_back(entry(key, value));
+  return section;
+}
+
+/// Takes the lists of tables out of a table, as tables of their own.
+void take_lists(TomlDocument& document, const std::string& name, const toml::table& table,
+                TomlTable& section) {
+  for (const auto& [key, value] : table) {
+    const auto* list = value.as_array();
+    if (list == nullptr || list->empty() || !list->is_homogeneous<toml::table>()) continue;
+    std::erase_if(section.entries, [&](const TomlEntry& e) { return e.key == key.str(); });
+    int number = 0;
+    for (const auto& item : *list)
+      document.tables.push_back(table_of(fmt::format("{}.{} {}", name, key.str(), ++number),
+                                         position(item.source()), *item.as_table()));
+  }
+}
+
 bool earlier(const TomlEntry& a, const TomlEntry& b) { return a.key_at < b.key_at; }
 
 /// The library's message on one line, without its opening words.
@@ -85,11 +105,11 @@ TomlDocument parse_toml(const std::string& text, const std::string& path) {
       document.loose.push_back(entry(key, node));
       continue;
     }
-    TomlTable section{std::string(key.str()), position(key.source()), {}};
-    for (const auto& [name, value] : *table) section.entries.push_back(entry(name, value));
-    std::ranges::sort(section.entries, earlier);
+    TomlTable section = table_of(std::string(key.str()), position(key.source()), *table);
+    take_lists(document, section.name, *table, section);
     document.tables.push_back(std::move(section));
   }
+  for (TomlTable& table : document.tables) std::ranges::sort(table.entries, earlier);
   std::ranges::sort(document.loose, earlier);
   std::ranges::sort(document.tables, {}, &TomlTable::at);
   return document;
