@@ -33,8 +33,7 @@ std::string code(const std::string& text) { return text.empty() ? "" : "`" + tex
 /// "[section]", or "[[section.list]]" of one of a list.
 std::string heading(const std::string& section) {
   const auto space = section.find(' ');
-  return space == std::string::npos ? "[" + section + "]"
-                                    : "[[" + section.substr(0, space) + "]]";
+  return space == std::string::npos ? "[" + section + "]" : "[[" + section.substr(0, space) + "]]";
 }
 
 std::string fallback_cell(const Declaration& d) {

@@ -57,6 +57,13 @@ mesh::Mesh take_mesh(const Options& options, Input& input, core::Log& log) {
   return mesh;
 }
 
+std::string orientations_text(const Options& options, const Input& input) {
+  if (input.orientations_of_input) return "those of the file";
+  if (options.orientations.file) return *options.orientations.file;
+  if (options.orientations.distribution == "components") return "texture components, from the seed";
+  return "uniform, from the seed";
+}
+
 void read_files(const Options& options, Input& input) {
   if (options.input.tessellation) input.tessellation = mesh::read_tess(*options.input.tessellation);
   if (!options.input.mesh) return;
@@ -90,10 +97,7 @@ Input read_input(const Options& options) {
 
 mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std::string& folder,
                                 mesh::MesherPool& pool, core::Log& log, core::StageTimes& times) {
-  if (options.input.any())
-    log.info("orientations: {}", input.orientations_of_input ? "those of the file"
-                                 : options.orientations.file ? *options.orientations.file
-                                                             : "uniform, from the seed");
+  if (options.input.any()) log.info("orientations: {}", orientations_text(options, input));
   if (input.mesh) {
     mesh::Mesh mesh = take_mesh(options, input, log);
     mesh::write_msh(mesh, results::in_folder(folder, results::mesh_name(0)));

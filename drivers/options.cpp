@@ -130,7 +130,8 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
       "file",
       {.help =
            "The first mesh, made elsewhere, in Gmsh's format 2.2 or 4.1 (`.msh`, ASCII or binary, "
-           "`.gz` too), grains as physical volumes, of a box; its grains' faces, edges and vertices are found from "
+           "`.gz` too), grains as physical volumes, of a box; its grains' faces, edges and "
+           "vertices are found from "
            "them. [polycrystal] and [regularisation] then have no meaning, but for the seed of "
            "uniform orientations. The other keys here are those of remeshings. A relative path "
            "starts at the deck's folder."});
@@ -169,31 +170,6 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
                                .max = 86400,
                                .help = "CPU time a mesher may spend on one grain; beyond it that "
                                        "candidate is lost, and the log says so."});
-  return o;
-}
-
-OrientationOptions read_orientation_options(Deck& deck, const InputOptions& input) {
-  auto t = deck.table("orientations", "Initial crystal orientations, one a grain.");
-  OrientationOptions o;
-  if (input.any()) o.distribution = "input";
-  o.distribution =
-      t.text("distribution", {.fallback = o.distribution,
-                              .choices = {"uniform", "file", "input"},
-                              .help = "Uniform random orientations from the seed, a file, or "
-                                      "(the default with [polycrystal] file or [mesh] file) "
-                                      "those of that file, uniform ones if it has none."});
-  o.file = t.optional_file(
-      "file",
-      {.help = "With distribution = \"file\": one orientation a line, as many lines as "
-               "grains; `#` starts a comment. A relative path starts at the deck's folder."});
-  o.convention = t.text(
-      "convention",
-      {.fallback = o.convention,
-       .choices = {"quaternion", "rodrigues", "euler-bunge"},
-       .help =
-           "What a line of the file holds: w x y z of a unit quaternion, r1 r2 r3 of a Rodrigues "
-           "vector (both of the rotation that turns crystal axes into sample axes), or phi1 Phi "
-           "phi2 in degrees (Bunge)."});
   return o;
 }
 
@@ -268,7 +244,8 @@ Options read_options(Deck& deck, Purpose purpose) {
 }
 
 std::string deck_reference() {
-  Deck deck = Deck::from_text("", "deck.toml");
+  // One of each list, so that its keys are declared.
+  Deck deck = Deck::from_text("[[orientations.component]]\n", "deck.toml");
   declare(deck);
   return "# The deck\n\n"
          "A deck is a TOML file. This page is generated from the program "

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/deck.hpp"
+#include "core/texture.hpp"
 #include "material/crystal_law.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/msh_reader.hpp"
@@ -17,9 +18,10 @@ namespace polyslip::drivers {
 
 /// What a deck asks for in [orientations].
 struct OrientationOptions {
-  std::string distribution = "uniform";   ///< "uniform", "file" or "input"
-  std::optional<std::string> file;        ///< path to open; set if and only if "file"
-  std::string convention = "quaternion";  ///< "quaternion", "rodrigues" or "euler-bunge"
+  std::string distribution = "uniform";            ///< "uniform", "components", "file" or "input"
+  std::optional<std::string> file;                 ///< path to open; set if and only if "file"
+  std::string convention = "quaternion";           ///< "quaternion", "rodrigues" or "euler-bunge"
+  std::vector<core::TextureComponent> components;  ///< some if and only if "components"
 };
 
 /// A polycrystal or a mesh made elsewhere; at most one of them.

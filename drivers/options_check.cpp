@@ -31,6 +31,14 @@ void check_orientations(Deck& deck, const OrientationOptions& o) {
                fmt::format("file is not used with distribution = \"{}\"; remove it, or set "
                            "distribution = \"file\"",
                            o.distribution));
+  if (o.distribution == "components" && o.components.empty())
+    deck.fault(section, "distribution",
+               "distribution = \"components\" needs a table [[orientations.component]] at least");
+  if (o.distribution != "components" && !o.components.empty())
+    deck.fault("orientations.component 1", "",
+               fmt::format("components are not used with distribution = \"{}\"; remove them, or "
+                           "set distribution = \"components\"",
+                           o.distribution));
   if (o.distribution != "file") return;
   if (!o.file)
     deck.fault(section, "distribution", "distribution = \"file\" needs the key file");

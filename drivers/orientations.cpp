@@ -102,6 +102,10 @@ std::vector<core::Quaternion> read_orientations(const std::string& path,
 
 std::vector<core::Quaternion> grain_orientations(const Options& options) {
   const int grains = options.polycrystal.grains;
+  if (options.orientations.distribution == "components") {
+    core::Random random(options.polycrystal.seed, core::Stream::texture);
+    return core::random_texture(random, options.orientations.components, grains);
+  }
   if (!options.orientations.file) return uniform_orientations(options.polycrystal.seed, grains);
   return read_orientations(*options.orientations.file, options.orientations.convention, grains);
 }

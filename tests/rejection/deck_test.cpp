@@ -79,6 +79,27 @@ const WrongDeck wrong_decks[] = {
     {"OrientationFileNotUsed", "[orientations]\nfile = \"ori.txt\"\n",
      "deck.toml:2:8: [orientations] file is not used with distribution = \"uniform\"; remove it, "
      "or set distribution = \"file\""},
+    {"ComponentsMissing", "[orientations]\ndistribution = \"components\"\n",
+     "deck.toml:2:16: [orientations] distribution = \"components\" needs a table "
+     "[[orientations.component]] at least"},
+    {"ComponentsNotUsed", "[[orientations.component]]\nname = \"cube\"\n",
+     "deck.toml:1:1: [orientations.component 1] components are not used with distribution = "
+     "\"uniform\"; remove them, or set distribution = \"components\""},
+    {"ComponentUnknown",
+     "[orientations]\ndistribution = \"components\"\n[[orientations.component]]\n"
+     "name = \"cube\"\n[[orientations.component]]\nname = \"bras\"\n",
+     "deck.toml:6:8: [orientations.component 2] name = \"bras\" must be \"cube\", \"goss\", "
+     "\"brass\", \"copper\", \"s\", \"dillamore\" or \"rotated-cube\"; did you mean \"brass\"?"},
+    {"FibreWithoutDirection",
+     "[orientations]\ndistribution = \"components\"\n[[orientations.component]]\n"
+     "type = \"fibre\"\ncrystal = [1, 1, 1]\n",
+     "deck.toml:4:8: [orientations.component 1] type = \"fibre\" needs crystal and sample, and no "
+     "name, plane, direction or euler"},
+    {"ParallelMillerIndices",
+     "[orientations]\ndistribution = \"components\"\n[[orientations.component]]\n"
+     "plane = [1, 1, 1]\ndirection = [2, 2, 2]\n",
+     "deck.toml:4:9: [orientations.component 1] a plane and a direction must not be zero or "
+     "parallel"},
     {"LoadingUnknown", "[loading]\ntype = \"tension\"\n",
      "deck.toml:2:8: [loading] type = \"tension\" must be \"plane-strain-compression\""},
 };

@@ -307,5 +307,46 @@ TEST(Toml, NumbersKeepTheirValueAndKind) {
   EXPECT_EQ(toml_text(-0.0), "-0.0");
 }
 
+std::vector<double> weights(Deck& deck) {
+  deck.table("meal", "A meal.");
+  std::vector<double> found;
+  for (auto& course : deck.tables("meal.course", "A course."))
+    found.push_back(course.number("weight", {.fallback = 1, .min = 0, .help = "Weight."}));
+  return found;
+}
+
+TEST(Deck, ReadsListsOfTables) {
+  Deck deck = Deck::from_text(
+      "[meal]\n[[meal.course]]\nweight = 2\n[[meal.course]]\n[[meal.course]]\nweight = 3\n", "d");
+  EXPECT_EQ(weights(deck), (std::vector<double>{2, 1, 3}));
+  EXPECT_NO_THROW(deck.finish());
+  EXPECT_EQ(deck.where("meal.course 3", "weight"), "d:6:10");
+  Deck again = Deck::from_text(deck.resolved(), "d");
+  EXPECT_EQ(weights(again), (std::vector<double>{2, 1, 3}));
+  EXPECT_EQ(again.resolved(), deck.resolved());
+  EXPECT_NE(deck.reference().find("## [[meal.course]]"), std::string::npos);
+  Deck none = Deck::from_text("", "d");
+  EXPECT_TRUE(weights(none).empty());
+}
+
+TEST(Deck, FaultsOfListsNameTheTable) {
+  const auto fault = [](const std::string& text) -> std::string {
+    Deck deck = Deck::from_text(text, "d");
+    weights(deck);
+    try {
+      deck.finish();
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(fault("[[meal.course]]\n[[meal.course]]\nweigth = 2\n"),
+            "d:3:1: [meal.course 2] unknown key 'weigth'; did you mean 'weight'?");
+  EXPECT_EQ(fault("[[meal.course]]\nweight = -2\n"),
+            "d:2:10: [meal.course 1] weight = -2 must be >= 0");
+  EXPECT_NE(fault("[[meal.curse]]\nweight = 2\n"), "");
+  EXPECT_NE(fault("[meal]\ncourse = 3\n"), "");
+}
+
 }  // namespace
 }  // namespace polyslip::core

@@ -122,5 +122,31 @@ TEST(GrainOrientations, FollowTheDeck) {
   EXPECT_THROW(grain_orientations(options), core::InputError);
 }
 
+TEST(GrainOrientations, AreDrawnFromTheComponentsOfTheDeck) {
+  const std::string text =
+      "[polycrystal]\ngrains = 40\nseed = 5\n[orientations]\ndistribution = \"components\"\n"
+      "[[orientations.component]]\nname = \"brass\"\nhalf_width = 0\n"
+      "[[orientations.component]]\ntype = \"fibre\"\ncrystal = [1, 1, 1]\nsample = [0, 0, 1]\n"
+      "half_width = 0\nshare = 2\n"
+      "[[orientations.component]]\neuler = [90, 0, 0]\nhalf_width = 0\n";
+  core::Deck deck = core::Deck::from_text(text, "deck.toml");
+  const Options options = read_options(deck);
+  const auto orientations = grain_orientations(options);
+  ASSERT_EQ(orientations.size(), 40U);
+  int brass = 0, fibre = 0, euler = 0;
+  for (const auto& q : orientations) {
+    brass += (q * core::Vec3(0, 1, 1).normalized() - core::Vec3::UnitZ()).norm() < 1e-12;
+    fibre += (q * core::Vec3(1, 1, 1).normalized() - core::Vec3::UnitZ()).norm() < 1e-12;
+    euler += (q * core::Vec3::UnitX() - core::Vec3::UnitY()).norm() < 1e-12;
+  }
+  EXPECT_EQ(brass, 10);
+  EXPECT_EQ(fibre, 20);
+  EXPECT_EQ(euler, 10);
+  // The deck as it was understood draws the same.
+  core::Deck again = core::Deck::from_text(deck.resolved(), "resolved.toml");
+  const auto same = grain_orientations(read_options(again));
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(same[i].coeffs(), orientations[i].coeffs());
+}
+
 }  // namespace
 }  // namespace polyslip::drivers
