@@ -45,7 +45,7 @@ results::Series curve_of(const results::Histogram& histogram, const std::string&
 results::Series curve_of(const std::vector<double>& values, double from, double to, int bins,
                          const std::string& label);
 
-/// The paper's regularisation: no polylines.
+/// The paper's regularisation.
 mesh::RegularisationOptions paper_regularisation(double max_edge_length, double max_fault = 20);
 
 }  // namespace polyslip::figures
