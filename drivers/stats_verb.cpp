@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct Subject {
   std::optional<mesh::Tessellation> tessellation;
-  std::optional<mesh::Mesh> mesh;
+  std::optional<mesh::MeshFile> mesh;
   std::optional<double> element_size;  ///< of the deck
 };
 
@@ -45,14 +45,14 @@ Subject read_folder(const std::string& folder) {
   if (fs::exists(tess)) subject.tessellation = mesh::read_tess(tess).tessellation;
   if (fs::exists(msh)) {
     subject.element_size = element_size_of(results::in_folder(folder, results::resolved_deck_name));
-    subject.mesh = mesh::read_msh(msh).mesh;
+    subject.mesh = mesh::read_msh(msh);
   }
   if (subject.tessellation && subject.mesh &&
-      subject.tessellation->topology.cell_count() != subject.mesh->topology.cell_count())
-    throw core::InputError(fmt::format("{}: {} has {} grains and {} has {}; give one of the files",
-                                       folder, results::tessellation_name,
-                                       subject.tessellation->topology.cell_count(),
-                                       results::mesh_name(0), subject.mesh->topology.cell_count()));
+      subject.tessellation->topology.cell_count() != subject.mesh->mesh.topology.cell_count())
+    throw core::InputError(
+        fmt::format("{}: {} has {} grains and {} has {}; give one of the files", folder,
+                    results::tessellation_name, subject.tessellation->topology.cell_count(),
+                    results::mesh_name(0), subject.mesh->mesh.topology.cell_count()));
   return subject;
 }
 
@@ -64,7 +64,7 @@ Subject read_subject(const std::string& input) {
   if (name.ends_with(".tess"))
     subject.tessellation = mesh::read_tess(input).tessellation;
   else if (name.ends_with(".msh"))
-    subject.mesh = mesh::read_msh(input).mesh;
+    subject.mesh = mesh::read_msh(input);
   else
     throw core::InputError(input +
                            ": is neither a tessellation (.tess) nor a mesh (.msh), nor a folder of "
@@ -83,10 +83,14 @@ void print_statistics(const StatsRequest& request) {
   if (options.element_size)
     options.element_size_source = request.element_size ? results::ElementSizeSource::option
                                                        : results::ElementSizeSource::deck;
-  const mesh::Mesh* mesh = subject.mesh ? &*subject.mesh : nullptr;
-  const auto statistics = results::statistics_of(
+  const mesh::Mesh* mesh = subject.mesh ? &subject.mesh->mesh : nullptr;
+  auto statistics = results::statistics_of(
       subject.tessellation ? mesh::measure(*subject.tessellation) : mesh::measure(*mesh), mesh,
       options);
+  if (subject.mesh) {
+    statistics.grain_ids = subject.mesh->grain_ids;
+    statistics.file_rows = subject.mesh->file_rows;
+  }
   std::cout << results::table_text(statistics, request.input);
   if (request.to.empty()) return;
   std::cout << "\nwritten to " << request.to << ":";

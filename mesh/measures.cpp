@@ -117,6 +117,18 @@ double triangle_area(const Mesh& mesh, const std::array<int, 6>& t, const Triang
   return area;
 }
 
+/// Least angle [degrees] at the vertices of a loop.
+double least_corner(const std::vector<Vec3>& loop) {
+  double least = 180;
+  const std::size_t n = loop.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 u = loop[(i + 1) % n] - loop[i], v = loop[(i + n - 1) % n] - loop[i];
+    const double angle = std::atan2(u.cross(v).norm(), u.dot(v)) * 180 / std::numbers::pi;
+    least = min_or_nan(least, angle);
+  }
+  return least;
+}
+
 /// Largest angle [degrees] between two of the unit normals; equal ones are compared once.
 double largest_angle(std::vector<Vec3>& normals) {
   std::vector<Vec3> distinct;
@@ -202,6 +214,7 @@ Measures measure(const Tessellation& tessellation) {
       m.faces[f].area += 0.5 * (b - a).cross(c - a).norm();
     });
     m.faces[f].flatness_fault = degrees_of_chord(fan_fault(loops[f], master));
+    m.faces[f].least_corner = least_corner(loops[f]);
   }
   for (std::size_t e = 0; e < t.edges.size(); ++e)
     m.edges[e].length = (tessellation.vertices[t.edges[e].vertices[1]] -
@@ -217,6 +230,12 @@ Measures measure(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.lines.size(); ++i)
     m.edges[mesh.line_edge[i]].length += line_length(mesh, mesh.lines[i]);
   add_faces(mesh, m);
+  for (std::size_t f = 0; f < m.faces.size(); ++f) {
+    std::vector<Vec3> loop;
+    for (const int v : mesh.topology.face_vertices(static_cast<int>(f)))
+      loop.push_back(mesh.nodes[mesh.vertex_nodes[v]]);
+    m.faces[f].least_corner = least_corner(loop);
+  }
   add_surfaces(mesh.topology, m);
   const auto volumes = grain_volumes(mesh);
   for (std::size_t c = 0; c < m.grains.size(); ++c) m.grains[c].volume = volumes[c];

@@ -35,6 +35,8 @@ struct FaceMeasures {
   /// Largest angle [degrees] between the normals of two triangles of the face: its interpolation
   /// triangles (section 2.1.2.2 of the paper), or those of the mesh.
   double flatness_fault = 0;
+  /// Least angle [degrees] between two edges that follow each other, taken as straight.
+  double least_corner = 0;
 
   /// Diameter of the circle of the same area.
   double diameter() const;

@@ -48,6 +48,8 @@ const Kind face_diameter{"face_diameter", "face diameter", "L",
 const Kind face_edges{"face_edges", "edges per face", "1", "Edges of a face.", 0, true};
 const Kind face_fault{"face_flatness_fault", "flatness fault", "degrees",
                       "Largest angle between the normals of two triangles of a face.", 20};
+const Kind face_corner{"face_least_corner", "least corner of a face", "degrees",
+                       "Least angle between two edges of a face that follow each other.", 180};
 const Kind edge_length{"edge_length", "edge length", "L", "Length of an edge."};
 const Kind element_ratio{"radius_ratio", "radius ratio", "1",
                          "3 r_in / R_circ of the tetrahedron through an element's corners.", 1};
@@ -128,6 +130,7 @@ void add_polycrystal(Statistics& s) {
   faces(face_diameter, [](const FaceMeasures& f) { return f.diameter(); });
   faces(face_edges, [](const FaceMeasures& f) { return f.edges; });
   faces(face_fault, [](const FaceMeasures& f) { return f.flatness_fault; });
+  faces(face_corner, [](const FaceMeasures& f) { return f.least_corner; });
   s.quantities.push_back(
       make(edge_length, collect(s.measures.edges, inner, [](const auto& e) { return e.length; })));
 }

@@ -40,10 +40,13 @@ struct Statistics {
   int faces = 0, edges = 0, vertices = 0;
   long elements = 0, nodes = 0;  ///< 0 without a mesh
   std::vector<Quantity> quantities;
+  /// The file's own numbers of grains and elements, [grain] and [element]; empty: from 1.
+  std::vector<int> grain_ids, file_rows;
   mesh::Measures measures;                            ///< all, inner or not
   std::vector<mesh::GrainMeshMeasures> grain_meshes;  ///< [grain]; empty without a mesh
   double O_dis = 0, O_size = 0, O = 0;  ///< eqs. (6), (7), (5) over all elements that are counted
 
+  int grain_id(int grain) const { return grain_ids.empty() ? grain + 1 : grain_ids[grain]; }
   /// The quantity of that key; InternalError if there is none.
   const Quantity& quantity(const std::string& key) const;
   bool counts(int grain) const { return !options.inner || measures.grains[grain].inner; }

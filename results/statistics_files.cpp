@@ -63,9 +63,9 @@ void write_grains(const std::string& path, const Statistics& s) {
   write_table(path, header, s.grains, [&](Buffer& text, long row) {
     if (!s.counts(static_cast<int>(row))) return;
     const auto& g = s.measures.grains[row];
-    add(text, "{},{:d},{},{},{},{},{},{},{},{},{},{},{}", row + 1, g.inner, g.centroid.x(),
-        g.centroid.y(), g.centroid.z(), g.volume, g.diameter(), g.area, g.sphericity(), g.faces,
-        g.edges, g.vertices, g.neighbours);
+    add(text, "{},{:d},{},{},{},{},{},{},{},{},{},{},{}", s.grain_id(static_cast<int>(row)),
+        g.inner, g.centroid.x(), g.centroid.y(), g.centroid.z(), g.volume, g.diameter(), g.area,
+        g.sphericity(), g.faces, g.edges, g.vertices, g.neighbours);
     if (meshed) {
       const auto& m = s.grain_meshes[row];
       add(text, ",{},{},{},{},{},{},{}", m.elements, m.min_radius_ratio, m.mean_radius_ratio,
@@ -77,14 +77,16 @@ void write_grains(const std::string& path, const Statistics& s) {
 
 void write_faces(const std::string& path, const Statistics& s) {
   // The second grain is 0 on the domain boundary, whose faces count from 1 as in files.
-  write_table(path, "face,inner,grain_1,grain_2,domain_face,edges,area,diameter,flatness_fault",
-              s.faces, [&](Buffer& text, long row) {
-                const auto& f = s.measures.faces[row];
-                if (s.options.inner && !f.inner) return;
-                add(text, "{},{:d},{},{},{},{},{},{},{}\n", row + 1, f.inner, f.cells[0] + 1,
-                    f.cells[1] + 1, f.domain_face + 1, f.edges, f.area, f.diameter(),
-                    f.flatness_fault);
-              });
+  write_table(
+      path,
+      "face,inner,grain_1,grain_2,domain_face,edges,area,diameter,flatness_fault,least_corner",
+      s.faces, [&](Buffer& text, long row) {
+        const auto& f = s.measures.faces[row];
+        if (s.options.inner && !f.inner) return;
+        add(text, "{},{:d},{},{},{},{},{},{},{},{}\n", row + 1, f.inner, s.grain_id(f.cells[0]),
+            f.cells[1] < 0 ? 0 : s.grain_id(f.cells[1]), f.domain_face + 1, f.edges, f.area,
+            f.diameter(), f.flatness_fault, f.least_corner);
+      });
 }
 
 void write_edges(const std::string& path, const Statistics& s) {
@@ -103,8 +105,9 @@ void write_elements(const std::string& path, const Statistics& s, const mesh::Me
                 const int grain = mesh.tetrahedron_cell[row];
                 if (!s.counts(grain)) return;
                 const auto m = mesh::measure_element(mesh, static_cast<int>(row));
-                add(text, "{},{},{:.6g},{:.6g},{:.6g}\n", row + 1, grain + 1, m.radius_ratio,
-                    m.size, m.size / *s.options.element_size);
+                const long place = s.file_rows.empty() ? row : s.file_rows[row];
+                add(text, "{},{},{:.6g},{:.6g},{:.6g}\n", place + 1, s.grain_id(grain),
+                    m.radius_ratio, m.size, m.size / *s.options.element_size);
               });
 }
 

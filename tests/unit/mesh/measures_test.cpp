@@ -53,6 +53,7 @@ TEST(Measures, OfCubes) {
     EXPECT_NEAR(f.area, 1, 1e-12);
     EXPECT_NEAR(f.diameter(), 2 / std::sqrt(pi), 1e-12);
     EXPECT_NEAR(f.flatness_fault, 0, 1e-5);
+    EXPECT_NEAR(f.least_corner, 90, 1e-9);
     EXPECT_EQ(f.cells[1] < 0, f.domain_face >= 0);
   }
   EXPECT_EQ(std::count_if(m.faces.begin(), m.faces.end(), [](auto& f) { return f.inner; }), 6);
@@ -65,6 +66,58 @@ TEST(Measures, OfCubes) {
     EXPECT_EQ(e.faces, 4);
   }
   EXPECT_EQ(inner_edges, 12);
+}
+
+/// Lattice points of a cubic lattice of constant 1 with a basis, in a box of n cells.
+std::vector<Vec3> lattice(int n, const std::vector<Vec3>& basis) {
+  std::vector<Vec3> seeds;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (int k = 0; k < n; ++k)
+        for (const Vec3& x : basis) seeds.push_back(Vec3(i, j, k) + x);
+  return seeds;
+}
+
+TEST(Measures, OfTruncatedOctahedra) {
+  const double q = 0.25;
+  const auto seeds = lattice(3, {{q, q, q}, {3 * q, 3 * q, 3 * q}});
+  const Measures m = measure(voronoi_tessellation(seeds, Vec3::Constant(3)));
+  // Edge a: volume 8 sqrt 2 a^3 = 1/2; six squares and eight hexagons.
+  const double a = std::cbrt(1 / (16 * std::sqrt(2.0)));
+  int inner = 0;
+  for (const GrainMeasures& g : m.grains) {
+    if (!g.inner || (g.centroid - Vec3::Constant(1.5)).cwiseAbs().maxCoeff() > 0.5) continue;
+    ++inner;
+    EXPECT_EQ(g.faces, 14);
+    EXPECT_EQ(g.edges, 36);
+    EXPECT_EQ(g.vertices, 24);
+    EXPECT_NEAR(g.volume, 0.5, 1e-9);
+    EXPECT_NEAR(g.area, (6 + 12 * std::sqrt(3.0)) * a * a, 1e-9);
+    EXPECT_NEAR(g.sphericity(), 0.9099, 1e-4);
+  }
+  EXPECT_EQ(inner, 2);
+}
+
+TEST(Measures, OfRhombicDodecahedra) {
+  const double q = 0.25, h = 0.75;
+  const auto seeds = lattice(3, {{q, q, q}, {q, h, h}, {h, q, h}, {h, h, q}});
+  const Measures m = measure(voronoi_tessellation(seeds, Vec3::Constant(3)));
+  int inner = 0;
+  for (const GrainMeasures& g : m.grains) {
+    if (!g.inner || (g.centroid - Vec3::Constant(1.5)).cwiseAbs().maxCoeff() > 0.5) continue;
+    ++inner;
+    EXPECT_EQ(g.faces, 12);
+    EXPECT_EQ(g.edges, 24);
+    EXPECT_EQ(g.vertices, 14);
+    EXPECT_NEAR(g.volume, 0.25, 1e-9);
+    EXPECT_NEAR(g.sphericity(), 0.9047, 1e-4);
+    EXPECT_EQ(g.neighbours, 12);
+  }
+  EXPECT_EQ(inner, 4);
+  for (const FaceMeasures& f : m.faces) {
+    if (!f.inner) continue;
+    EXPECT_NEAR(f.least_corner, std::acos(1.0 / 3) * 180 / pi, 1e-6);
+  }
 }
 
 TEST(Measures, FlatnessFaultIsThatOfTheInterpolationTriangles) {
@@ -107,6 +160,7 @@ TEST(Measures, OfAMeshOfSlabs) {
   for (const FaceMeasures& f : m.faces) {
     EXPECT_NEAR(f.area, 4, 1e-12);
     EXPECT_NEAR(f.flatness_fault, 0, 1e-6);
+    EXPECT_NEAR(f.least_corner, 90, 1e-9);
   }
   for (const EdgeMeasures& e : m.edges) EXPECT_NEAR(e.length, 2, 1e-12);
   // Kuhn's tetrahedron of the unit cube: edges 1, 1, 1, sqrt 2, sqrt 2, sqrt 3; r_in = 3 V / A with
