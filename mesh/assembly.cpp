@@ -139,6 +139,7 @@ Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
   Mesh mesh;
   mesh.order = order;
   mesh.topology = geometry.topology;
+  mesh.domain = geometry.domain;
   mesh.size = geometry.size;
   const auto numbers = boundary.numbers();
   mesh.nodes = boundary.positions(numbers);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "core/error.hpp"
@@ -20,7 +21,7 @@ using core::Vec3;
 constexpr double least_projected_share = 0.05;
 /// How far beyond the old face, in its extent, a node may be that is put on its nearest point.
 constexpr double farthest_beyond = 0.02;
-/// A domain face is flat if its points differ by less than this, relative to the box.
+/// A domain face is flat if its points differ by less than this, relative to the domain.
 constexpr double flat = 1e-10;
 
 /// Order of positions, for looking them up.
@@ -71,38 +72,46 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
 
 void BoundaryMesher::find_planes() {
   const auto& topology = geometry_.topology;
-  vertex_planes_.assign(topology.vertex_count, 0);
-  edge_planes_.assign(topology.edges.size(), 0);
-  for (int plane = 0; plane < 6; ++plane) {
-    const int axis = plane / 2;
-    double low = 0, high = 0;
-    bool any = false;
-    for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-      if (topology.faces[f].domain_face != plane) continue;
-      for (const auto& x : geometry_.faces[f].points) {
-        low = any ? std::min(low, x[axis]) : x[axis];
-        high = any ? std::max(high, x[axis]) : x[axis];
-        any = true;
-      }
-    }
-    // Of the values that rounding gives: the side of the undeformed box if it is among them.
-    const double side = plane % 2 == 0 ? 0.0 : geometry_.size[axis];
-    if (any && high - low <= flat * geometry_.size[axis])
-      planes_[plane] = low <= side && side <= high ? side : low;
-  }
-  for (const auto& face : topology.faces) {
-    if (face.domain_face < 0) continue;
-    for (int e : face.edges) {
-      edge_planes_[e] |= 1u << face.domain_face;
-      for (int v : topology.edges[e].vertices) vertex_planes_[v] |= 1u << face.domain_face;
+  const auto& domain = geometry_.domain.faces;
+  struct Range {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+  };
+  std::vector<Range> ranges(domain.size());
+  for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+    const int d = topology.faces[f].domain_face;
+    if (d < 0) continue;
+    for (const auto& x : geometry_.faces[f].points) {
+      const double offset = domain[d].plane.normal.dot(x);
+      ranges[d].low = std::min(ranges[d].low, offset);
+      ranges[d].high = std::max(ranges[d].high, offset);
     }
   }
+  planes_.assign(domain.size(), std::nullopt);
+  for (std::size_t d = 0; d < domain.size(); ++d) {
+    const auto [low, high] = ranges[d];
+    if (!(high - low <= flat * geometry_.size.maxCoeff())) continue;
+    // Of the values that rounding gives: the plane of the undeformed domain if it is among them.
+    Plane plane = domain[d].plane;
+    const double rounding = geometry_.from_mesh ? 0 : flat * geometry_.size.maxCoeff();
+    if (plane.offset < low - rounding || plane.offset > high + rounding) plane.offset = low;
+    planes_[d] = plane;
+  }
+  vertex_planes_ = domain_faces_of_vertices(topology);
+  edge_planes_ = domain_faces_of_edges(topology);
   for (int v = 0; v < topology.vertex_count; ++v) keep_in_planes(vertices_[v], vertex_planes_[v]);
 }
 
-void BoundaryMesher::keep_in_planes(Vec3& x, unsigned planes) const {
-  for (int i = 0; i < 6; ++i)
-    if ((planes >> i & 1u) && planes_[i]) x[i / 2] = *planes_[i];
+void BoundaryMesher::keep_in_planes(Vec3& x, std::span<const int> domain_faces) const {
+  if (domain_faces.empty()) return;
+  std::vector<Plane> planes;
+  for (const int d : domain_faces)
+    if (planes_[d]) planes.push_back(*planes_[d]);
+  put_on_planes(planes, x);
+}
+
+void BoundaryMesher::keep_in_plane_of(int face, Vec3& x) const {
+  const int d = geometry_.topology.faces[face].domain_face;
+  if (d >= 0 && planes_[d]) put_on_planes({&*planes_[d], 1}, x);
 }
 
 bool BoundaryMesher::copy(int face) {
@@ -232,9 +241,8 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
   }
   PlanarMesh plane;
   if (!mesh_polygon(problem, plane)) return plane.fault;
-  const int domain = geometry_.topology.faces[face].domain_face;
   const auto in_plane = [&](Vec3 x) {
-    if (domain >= 0) keep_in_planes(x, 1u << domain);
+    keep_in_plane_of(face, x);
     return x;
   };
   double farthest = 0;
@@ -260,13 +268,12 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
 
 double BoundaryMesher::place_mids(int face, const FaceProjection& projection,
                                   const std::vector<Vec3>& x) {
-  const int domain = geometry_.topology.faces[face].domain_face;
   double farthest = 0;
   for (auto& e : faces_[face].inner_edges) {
     const Vec3 middle = (x[e.a] + x[e.b]) / 2;
     double beyond = 0;
     e.mid = projection.nearest(middle, projection.project(middle), &beyond);
-    if (domain >= 0) keep_in_planes(e.mid, 1u << domain);
+    keep_in_plane_of(face, e.mid);
     faces_[face].nearest_points += beyond > 0;
     farthest = std::max(farthest, beyond);
   }
@@ -278,8 +285,7 @@ std::optional<Vec3> BoundaryMesher::face_point(int face, const FaceProjection& p
   double beyond = 0;
   Vec3 x = projection.lift(projection.project(target), &beyond);
   if (!(beyond <= 0)) return std::nullopt;
-  const int domain = geometry_.topology.faces[face].domain_face;
-  if (domain >= 0) keep_in_planes(x, 1u << domain);
+  keep_in_plane_of(face, x);
   return x;
 }
 
@@ -323,10 +329,8 @@ void BoundaryMesher::copy_face_mesh(int face) {
   }
   for (const auto& [a, b, t, i] : inner_edges(result.triangles))
     result.inner_edges.push_back({a, b, shape.points[shape.triangles[t][3 + i]]});
-  for (auto& x : result.inner_nodes)
-    if (f.domain_face >= 0) keep_in_planes(x, 1u << f.domain_face);
-  for (auto& e : result.inner_edges)
-    if (f.domain_face >= 0) keep_in_planes(e.mid, 1u << f.domain_face);
+  for (auto& x : result.inner_nodes) keep_in_plane_of(face, x);
+  for (auto& e : result.inner_edges) keep_in_plane_of(face, e.mid);
 }
 
 /// Edges and faces that are stale, until none is: copying a face makes its neighbours stale.

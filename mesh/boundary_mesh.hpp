@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -87,7 +88,9 @@ class BoundaryMesher {
 
  private:
   void find_planes();
-  void keep_in_planes(core::Vec3& x, unsigned planes) const;
+  /// Puts a point on those of the domain faces that are planes.
+  void keep_in_planes(core::Vec3& x, std::span<const int> domain_faces) const;
+  void keep_in_plane_of(int face, core::Vec3& x) const;
   void mesh_edge(int edge);
   void finish_edge(int edge);
   /// Mid nodes of the inner edges; how far the farthest lies beyond the old face.
@@ -124,8 +127,8 @@ class BoundaryMesher {
   const Geometry& geometry_;
   MeshingOptions options_;
   core::Vec3 scale_;
-  std::array<std::optional<double>, 6> planes_;  ///< coordinate of each domain face that is flat
-  std::vector<unsigned> vertex_planes_, edge_planes_;  ///< bit i: lies in domain face i
+  std::vector<std::optional<Plane>> planes_;  ///< [domain faces] of those that are flat
+  DomainFaceLists vertex_planes_, edge_planes_;
   std::vector<core::Vec3> vertices_;
   std::vector<double> edge_lengths_;
   std::vector<std::array<double, 2>> end_sizes_;  ///< [edges] sizes that its grading starts from

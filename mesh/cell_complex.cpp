@@ -21,12 +21,14 @@ std::vector<int> common(const std::vector<int>& p, const std::vector<int>& q) {
   return both;
 }
 
-bool subset(int part, int whole) { return (part & ~whole) == 0; }
+bool subset(const std::vector<int>& part, const std::vector<int>& whole) {
+  return std::includes(whole.begin(), whole.end(), part.begin(), part.end());
+}
 
 }  // namespace
 
 CellComplex::CellComplex(const Tessellation& tessellation)
-    : planes_(tessellation.face_planes), seeds_(tessellation.seeds), size_(tessellation.size) {
+    : planes_(tessellation.face_planes), seeds_(tessellation.seeds), domain_(tessellation.domain) {
   const Topology& t = tessellation.topology;
   vertices_.resize(t.vertex_count);
   edges_.resize(t.edges.size());
@@ -47,17 +49,23 @@ CellComplex::CellComplex(const Tessellation& tessellation)
       face.loop.push_back({e, t.faces[f].forward[i]});
       edges_[e].faces.push_back(f);
       if (face.domain_face >= 0)
-        for (const int v : edges_[e].vertices)
-          vertices_[v].walls |= static_cast<std::uint8_t>(1U << face.domain_face);
+        for (const int v : edges_[e].vertices) vertices_[v].walls.push_back(face.domain_face);
     }
     face.fault = fan_fault(loop_points(f), face.master);
   }
+  for (Vertex& v : vertices_) sort_unique(v.walls);
   for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].faces = t.cell_faces[c];
 }
 
 double CellComplex::length(int edge) const {
   const auto [a, b] = edges_[edge].vertices;
   return (vertices_[a].position - vertices_[b].position).norm();
+}
+
+std::vector<Plane> CellComplex::planes_at(int vertex) const {
+  std::vector<Plane> planes;
+  for (const int w : vertices_[vertex].walls) planes.push_back(domain_.faces[w].plane);
+  return planes;
 }
 
 std::vector<int> CellComplex::loop_vertices(int face) const {
@@ -114,12 +122,13 @@ bool CellComplex::keeps_four_faces(const std::vector<int>& lost) const {
 
 bool CellComplex::domain_allows(int edge) const {
   const auto [a, b] = edges_[edge].vertices;
-  const int walls_a = vertices_[a].walls, walls_b = vertices_[b].walls;
+  const auto &walls_a = vertices_[a].walls, &walls_b = vertices_[b].walls;
   if (!subset(walls_a, walls_b) && !subset(walls_b, walls_a)) return false;
-  int walls_of_edge = 0;
+  std::vector<int> walls_of_edge;
   for (const int f : edges_[edge].faces)
-    if (faces_[f].domain_face >= 0) walls_of_edge |= 1 << faces_[f].domain_face;
-  return (walls_a & walls_b) == walls_of_edge;
+    if (faces_[f].domain_face >= 0) walls_of_edge.push_back(faces_[f].domain_face);
+  sort_unique(walls_of_edge);
+  return common(walls_a, walls_b) == walls_of_edge;
 }
 
 CellComplex::Obstacle CellComplex::obstacle(int edge) const {
@@ -178,9 +187,8 @@ void CellComplex::merge_sides_of_triangle(int face, int edge, int kept) {
 int CellComplex::collapse(int edge) {
   const auto [a, b] = edges_[edge].vertices;
   Vec3 position = 0.5 * (vertices_[a].position + vertices_[b].position);
-  const auto walls = static_cast<std::uint8_t>(vertices_[a].walls | vertices_[b].walls);
-  for (int w = 0; w < 6; ++w)
-    if (walls >> w & 1) position[w / 2] = w % 2 ? size_[w / 2] : 0.0;
+  const auto &walls_a = vertices_[a].walls, &walls_b = vertices_[b].walls;
+  const auto walls = walls_a.size() < walls_b.size() ? walls_b : walls_a;  // one holds the other
 
   const auto triangles = triangles_of(edge);
   for (const int f : edges_[edge].faces)
@@ -189,8 +197,9 @@ int CellComplex::collapse(int edge) {
   for (const int f : triangles) merge_sides_of_triangle(f, edge, a);
 
   Vertex& kept = change_vertex(a);
-  kept.position = position;
   kept.walls = walls;
+  put_on_planes(planes_at(a), position);
+  kept.position = position;
   std::erase(kept.edges, edge);
   for (const int e : vertices_[b].edges) {
     if (e == edge) continue;

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -20,7 +19,7 @@ class CellComplex {
   struct Vertex {
     core::Vec3 position = core::Vec3::Zero();
     std::vector<int> edges;
-    std::uint8_t walls = 0;  ///< bit w: bound to domain face w
+    std::vector<int> walls;  ///< domain faces to which it is bound, ascending
     bool alive = true;
   };
   struct Edge {
@@ -58,6 +57,8 @@ class CellComplex {
   int face_count() const { return static_cast<int>(faces_.size()); }
 
   double length(int edge) const;
+  /// The planes of the domain faces to which a vertex is bound.
+  std::vector<Plane> planes_at(int vertex) const;
   /// Vertices, and their positions, along the loop of a face.
   std::vector<int> loop_vertices(int face) const;
   std::vector<core::Vec3> loop_points(int face) const;
@@ -66,7 +67,7 @@ class CellComplex {
   std::vector<int> cells_at(int vertex) const;
 
   /// Why an edge cannot become a vertex so that each cell stays a polyhedron with the topology of a
-  /// ball, and the box keeps its corners, edges and faces. It can (none) if
+  /// ball, and the domain keeps its corners, edges and faces. It can (none) if
   ///  - domain: one of the two vertices is bound to all the domain faces to which the other is
   ///    bound, and those to which both are bound hold the edge;
   ///  - topology: faces and cells (the outside included) that hold both vertices hold the edge;
@@ -122,7 +123,7 @@ class CellComplex {
   std::vector<Plane> planes_;
   std::vector<core::Vec3> seeds_;
   std::vector<Saved> journal_;
-  core::Vec3 size_;
+  Domain domain_;
 };
 
 }  // namespace polyslip::mesh

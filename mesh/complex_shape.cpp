@@ -22,7 +22,8 @@ constexpr double first_plane_weight = 0.5;
 /// domain faces leave free.
 class PlaneFit {
  public:
-  explicit PlaneFit(const CellComplex::Vertex& vertex) : vertex_(vertex) {
+  PlaneFit(const CellComplex& complex, int vertex)
+      : old_(complex.vertex(vertex).position), planes_(complex.planes_at(vertex)) {
     matrix_ = towards_old_position * Mat3::Identity();
   }
 
@@ -31,23 +32,22 @@ class PlaneFit {
     residual_ += weight * normal * distance;
   }
 
-  Vec3 position() {
-    for (int w = 0; w < 6; ++w) {
-      if (!(vertex_.walls >> w & 1)) continue;
-      const int axis = w / 2;
-      matrix_.row(axis).setZero();
-      matrix_.col(axis).setZero();
-      matrix_(axis, axis) = 1;
-      residual_[axis] = 0;
-    }
-    Vec3 x = vertex_.position + matrix_.ldlt().solve(residual_);
-    for (int w = 0; w < 6; ++w)
-      if (vertex_.walls >> w & 1) x[w / 2] = vertex_.position[w / 2];
+  Vec3 position() const {
+    if (planes_.empty()) return old_ + matrix_.ldlt().solve(residual_);
+    const Directions free = free_directions(planes_);
+    if (free.count == 0) return old_;
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> basis(3, free.count);
+    for (int i = 0; i < free.count; ++i) basis.col(i) = free[i];
+    Vec3 x =
+        old_ +
+        basis * (basis.transpose() * matrix_ * basis).ldlt().solve(basis.transpose() * residual_);
+    put_on_planes(planes_, x);
     return x;
   }
 
  private:
-  const CellComplex::Vertex& vertex_;
+  Vec3 old_;
+  std::vector<Plane> planes_;
   Mat3 matrix_;
   Vec3 residual_ = Vec3::Zero();
 };
@@ -87,7 +87,7 @@ bool seen_from_centroid(const CellComplex& complex, int cell) {
 
 Vec3 least_squares_position(const CellComplex& complex, int vertex, const std::vector<int>& faces) {
   const auto& v = complex.vertex(vertex);
-  PlaneFit fit(v);
+  PlaneFit fit(complex, vertex);
   for (const int f : faces) {
     if (complex.face(f).domain_face >= 0) continue;
     const Plane& plane = complex.plane(f);
@@ -98,7 +98,7 @@ Vec3 least_squares_position(const CellComplex& complex, int vertex, const std::v
 
 Vec3 flattest_position(const CellComplex& complex, int vertex, const std::vector<int>& faces) {
   const auto& v = complex.vertex(vertex);
-  PlaneFit fit(v);
+  PlaneFit fit(complex, vertex);
   for (const int f : faces) {
     if (complex.face(f).domain_face >= 0) continue;
     const auto points = complex.loop_points(f);

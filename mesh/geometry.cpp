@@ -55,6 +55,7 @@ FaceShape interpolation_triangles(const Tessellation& tessellation, int face) {
 Geometry geometry_of(const Tessellation& tessellation) {
   Geometry g;
   g.topology = tessellation.topology;
+  g.domain = tessellation.domain;
   g.size = tessellation.size;
   g.vertices = tessellation.vertices;
   for (const auto& edge : g.topology.edges) {
@@ -73,6 +74,7 @@ Geometry geometry_of(const Mesh& mesh) {
   Geometry g;
   g.from_mesh = true;
   g.topology = mesh.topology;
+  g.domain = mesh.domain;
   g.size = mesh.size;
   for (int n : mesh.vertex_nodes) g.vertices.push_back(mesh.nodes[n]);
   g.edges.resize(g.topology.edges.size());

@@ -30,7 +30,8 @@ struct FaceShape {
 
 struct Geometry {
   Topology topology;
-  core::Vec3 size{1, 1, 1};
+  Domain domain = box_domain({1, 1, 1});
+  core::Vec3 size{1, 1, 1};  ///< of the domain's bounding box
   std::vector<core::Vec3> vertices;
   std::vector<EdgeShape> edges;
   std::vector<FaceShape> faces;
@@ -69,7 +70,7 @@ std::string repairs_text(const MeshingReport& report);
 /// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes and projections are taken in the
 /// frame scaled by `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none.
 /// Same input, same mesh, for any number of workers. Throws RecoverableError if a face or a grain
-/// cannot be meshed, naming it; InternalError if the first mesh does not fill the box to 1e-12.
+/// cannot be meshed, naming it; InternalError if the first mesh does not fill the domain to 1e-12.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    MesherPool& pool, MeshingReport& report,
                    const std::function<void(double fraction)>& progress = {});

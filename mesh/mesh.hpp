@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/domain.hpp"
 #include "mesh/topology.hpp"
 
 namespace polyslip::mesh {
@@ -28,7 +29,8 @@ struct Mesh {
   std::vector<int> line_edge;                   ///< sorted by edge; lines of an edge in its order
   std::vector<int> vertex_nodes;                ///< [topology.vertex_count] node of each vertex
   Topology topology;
-  core::Vec3 size{1, 1, 1};  ///< box at zero strain
+  Domain domain = box_domain({1, 1, 1});  ///< at zero strain
+  core::Vec3 size{1, 1, 1};               ///< of its bounding box
 
   int element_count() const { return static_cast<int>(tetrahedra.size()); }
   int node_count() const { return static_cast<int>(nodes.size()); }
@@ -55,8 +57,8 @@ struct QualitySummary {
 };
 QualitySummary quality(const Mesh& mesh);
 
-/// Gmsh format 2.2 ASCII: grains as physical volumes, domain faces x0 ... z1 as named physical
-/// surfaces. Positions with 17 digits. Written beside and renamed.
+/// Gmsh format 2.2 ASCII: grains as physical volumes, surfaces of the domain (x0 ... z1 of a box)
+/// as named physical ones. Positions with 17 digits. Written beside and renamed.
 void write_msh(const Mesh& mesh, const std::string& path);
 
 }  // namespace polyslip::mesh

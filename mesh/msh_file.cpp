@@ -22,7 +22,7 @@ constexpr int triangle_type(int order) { return order == 2 ? 9 : 2; }
 class MshWriter {
  public:
   MshWriter(const Mesh& mesh, const std::string& path, const MshFormat& format)
-      : mesh_(mesh), format_(format), out_(path) {
+      : mesh_(mesh), format_(format), surfaces_(mesh.domain.surface_of_face()), out_(path) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       if (domain_face(i) >= 0) surface_.push_back(static_cast<int>(i));
   }
@@ -47,7 +47,7 @@ class MshWriter {
   int domain_face(std::size_t triangle) const {
     return mesh_.topology.faces[mesh_.triangle_face[triangle]].domain_face;
   }
-  int physical_surface(int triangle) const { return domain_face(triangle) + 1; }
+  int physical_surface(int triangle) const { return surfaces_[domain_face(triangle)] + 1; }
 
   template <class T>
   void raw(T value) {
@@ -90,10 +90,11 @@ class MshWriter {
   }
 
   void names() {
-    const std::size_t surfaces = box_face_names.size();
-    out_.put(fmt::format("$PhysicalNames\n{}\n", surfaces + mesh_.topology.cell_faces.size()));
-    for (std::size_t i = 0; i < surfaces; ++i)
-      out_.put(fmt::format("2 {} \"{}\"\n", i + 1, box_face_names[i]));
+    const auto surfaces = mesh_.domain.surface_names();
+    out_.put(
+        fmt::format("$PhysicalNames\n{}\n", surfaces.size() + mesh_.topology.cell_faces.size()));
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      out_.put(fmt::format("2 {} \"{}\"\n", i + 1, surfaces[i]));
     for (int c = 0; c < mesh_.topology.cell_count(); ++c)
       out_.put(fmt::format("3 {} \"grain{}\"\n", c + 1, c + 1));
     out_.put("$EndPhysicalNames\n");
@@ -270,6 +271,7 @@ class MshWriter {
 
   const Mesh& mesh_;
   MshFormat format_;
+  std::vector<int> surfaces_;  ///< [domain faces] physical surface, from 0
   core::FileWriter out_;
   bool inside_row_ = false;
   std::vector<int> surface_;  ///< triangles of the domain's surface

@@ -102,6 +102,7 @@ class MshReader {
     const bool keep = unit_ == LengthUnit::file || std::abs(ratio - 1) < 1e-9;
     const double scale = keep ? 1.0 : std::cbrt(ratio);
     mesh.size = scale * size;
+    mesh.domain = box_domain(mesh.size);
     if (low == Vec3::Zero() && scale == 1.0) return;
     for (Vec3& x : mesh.nodes)
       for (int i = 0; i < 3; ++i) x[i] = x[i] == high[i] ? mesh.size[i] : scale * (x[i] - low[i]);

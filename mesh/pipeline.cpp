@@ -24,15 +24,15 @@ using core::Vec3;
 constexpr int copy_rounds = 4;
 constexpr int volume_corrections = 2;
 
-/// The grains of an undeformed polycrystal fill its box, but for rounding.
-void check_box(const Mesh& mesh) {
+/// The grains of an undeformed polycrystal fill its domain, but for rounding.
+void check_domain(const Mesh& mesh) {
   constexpr double rounding = 1e-12;
   double sum = 0;
   for (double v : grain_volumes(mesh)) sum += v;
-  const double box = mesh.size.prod();
-  if (!(std::abs(sum - box) <= rounding * box))
+  const double domain = mesh.domain.volume;
+  if (!(std::abs(sum - domain) <= rounding * domain))
     throw core::InternalError(fmt::format(
-        "meshing: the grains' volumes add up to {:.17g}, the box has {:.17g}", sum, box));
+        "meshing: the grains' volumes add up to {:.17g}, the domain has {:.17g}", sum, domain));
 }
 
 /// State of the rounds: boundary, and each grain's best mesh so far.
@@ -71,7 +71,7 @@ class Pipeline {
     report_.straightened = mend_curved_elements(mesh);
     if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);
     fill_report();
-    if (!geometry_.from_mesh) check_box(mesh);
+    if (!geometry_.from_mesh) check_domain(mesh);
     tell(1.0);
     return mesh;
   }

@@ -224,11 +224,13 @@ class Regulariser {
     double fault = largest_fault(vertex, complex_.vertex(vertex).position, faces, infinity);
     if (!(fault <= search_fault_)) return fit_faces(complex_, faces);
     Vec3 best = complex_.vertex(vertex).position;
+    const auto planes = complex_.planes_at(vertex);
+    const Directions free = free_directions(planes);
     for (double step = length / 4; step > length / 50 && fault > max_fault_;) {
       bool better = false;
-      for (int i = 0; i < 6 && fault > max_fault_; ++i) {
-        if (complex_.vertex(vertex).walls >> i / 2 * 2 & 3) continue;
-        const Vec3 x = best + (i % 2 ? step : -step) * Vec3::Unit(i / 2);
+      for (int i = 0; i < 2 * free.count && fault > max_fault_; ++i) {
+        Vec3 x = best + (i % 2 ? step : -step) * free[i / 2];
+        put_on_planes(planes, x);
         const double there = largest_fault(vertex, x, faces, fault);
         if (there < fault) {
           fault = there;

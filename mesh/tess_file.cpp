@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 #include "core/file.hpp"
 #include "mesh/face_fan.hpp"
@@ -20,7 +21,8 @@ using core::Vec3;
 
 class TessWriter {
  public:
-  explicit TessWriter(const Tessellation& tessellation) : tess_(tessellation) {}
+  explicit TessWriter(const Tessellation& tessellation)
+      : tess_(tessellation), domain_(tessellation.domain) {}
 
   std::string text() {
     add("***tess\n **format\n   3.5\n **general\n   3 standard\n");
@@ -115,39 +117,23 @@ class TessWriter {
     }
   }
 
-  double corner_coordinate(int axis, bool high) const { return high ? tess_.size[axis] : 0.0; }
-
-  bool on_box_face(int vertex, int box_face) const {
-    const int axis = box_face / 2;
-    return tess_.vertices[vertex][axis] == corner_coordinate(axis, box_face % 2 == 1);
-  }
-
-  // Ids (from 1) of what lies in all the given faces of the box.
-  std::vector<int> vertices_on(const std::vector<int>& box_faces) const {
+  // Ids (from 1) of what lies in all the given faces of the domain.
+  static std::vector<int> lying_on(const DomainFaceLists& lists, std::size_t count,
+                                   const std::vector<int>& domain_faces) {
     std::vector<int> found;
-    for (int v = 0; v < tess_.topology.vertex_count; ++v)
-      if (std::all_of(box_faces.begin(), box_faces.end(), [&](int b) { return on_box_face(v, b); }))
-        found.push_back(v + 1);
+    for (std::size_t i = 0; i < count; ++i)
+      if (std::all_of(domain_faces.begin(), domain_faces.end(), [&](int d) {
+            return std::binary_search(lists[i].begin(), lists[i].end(), d);
+          }))
+        found.push_back(static_cast<int>(i) + 1);
     return found;
   }
 
-  std::vector<int> edges_on(int box_face_1, int box_face_2) const {
-    std::vector<int> found;
-    const auto& all = tess_.topology.edges;
-    for (std::size_t e = 0; e < all.size(); ++e) {
-      const auto [a, b] = all[e].vertices;
-      if (on_box_face(a, box_face_1) && on_box_face(b, box_face_1) && on_box_face(a, box_face_2) &&
-          on_box_face(b, box_face_2))
-        found.push_back(static_cast<int>(e) + 1);
-    }
-    return found;
-  }
-
-  std::vector<int> faces_on(int box_face) const {
+  std::vector<int> faces_on(int domain_face) const {
     std::vector<int> found;
     const auto& all = tess_.topology.faces;
     for (std::size_t f = 0; f < all.size(); ++f)
-      if (all[f].domain_face == box_face) found.push_back(static_cast<int>(f) + 1);
+      if (all[f].domain_face == domain_face) found.push_back(static_cast<int>(f) + 1);
     return found;
   }
 
@@ -157,79 +143,71 @@ class TessWriter {
     add("\n");
   }
 
-  // Corner i of the box: bits 0, 1, 2 of i say whether x, y, z are at the far side.
+  std::string label(const std::vector<int>& domain_faces) const {
+    std::string text;
+    for (const int d : domain_faces) text += domain_.faces[d].name;
+    return text;
+  }
+
   void domain() {
-    add(" **domain\n  *general\n   cube\n  *vertex\n   8\n");
-    for (int corner = 0; corner < 8; ++corner) {
-      std::vector<int> box_faces;
-      std::string label;
-      Vec3 x;
-      for (int axis = 0; axis < 3; ++axis) {
-        const int high = corner >> axis & 1;
-        box_faces.push_back(2 * axis + high);
-        label += box_face_names[2 * axis + high];
-        x[axis] = corner_coordinate(axis, high == 1);
-      }
-      add("   {}", corner + 1);
-      point(x);
-      add(" {}\n", label);
-      list("      ", vertices_on(box_faces));
-    }
+    add(" **domain\n  *general\n   {}\n", domain_.is_box() ? "cube" : domain_.shape);
+    domain_vertices();
     domain_edges();
     domain_faces();
   }
 
-  struct BoxEdge {
-    std::array<int, 2> corners, box_faces;
-  };
-
-  static std::vector<BoxEdge> box_edges() {
-    std::vector<BoxEdge> found;
-    for (int axis = 0; axis < 3; ++axis)
-      for (int corner = 0; corner < 8; ++corner) {
-        if (corner >> axis & 1) continue;
-        const int p = axis == 0 ? 1 : 0, q = axis == 2 ? 1 : 2;
-        found.push_back(
-            {{corner, corner | 1 << axis}, {2 * p + (corner >> p & 1), 2 * q + (corner >> q & 1)}});
-      }
-    return found;
+  void domain_vertices() {
+    const auto on_faces = domain_faces_of_vertices(tess_.topology);
+    std::vector<std::vector<int>> around(domain_.vertices.size());
+    for (int d = 0; d < domain_.face_count(); ++d)
+      for (const int v : domain_.faces[d].loop) around[v].push_back(d);
+    add("  *vertex\n   {}\n", domain_.vertices.size());
+    for (std::size_t v = 0; v < domain_.vertices.size(); ++v) {
+      add("   {}", v + 1);
+      point(domain_.vertices[v]);
+      add(" {}\n", label(around[v]));
+      list("      ", lying_on(on_faces, tess_.vertices.size(), around[v]));
+    }
   }
 
   void domain_edges() {
-    add("  *edge\n   12\n");
+    const auto on_faces = domain_faces_of_edges(tess_.topology);
+    add("  *edge\n   {}\n", domain_.edges.size());
     int id = 0;
-    for (const auto& e : box_edges()) {
-      add("   {} 2 {} {}\n     line\n     0\n     {}{}\n", ++id, e.corners[0] + 1, e.corners[1] + 1,
-          box_face_names[e.box_faces[0]], box_face_names[e.box_faces[1]]);
-      list("     ", edges_on(e.box_faces[0], e.box_faces[1]));
+    for (const auto& e : domain_.edges) {
+      const std::vector<int> faces(e.faces.begin(), e.faces.end());
+      add("   {} 2 {} {}\n     line\n     0\n     {}\n", ++id, e.vertices[0] + 1, e.vertices[1] + 1,
+          label(faces));
+      list("     ", lying_on(on_faces, tess_.topology.edges.size(), faces));
     }
   }
 
   void domain_faces() {
-    add("  *face\n   6\n");
-    const auto edges = box_edges();
-    for (int b = 0; b < 6; ++b) {
-      const int axis = b / 2, p = (axis + 1) % 3, q = (axis + 2) % 3;
-      const int base = (b % 2) << axis;
-      const std::array<int, 4> corners{base, base | 1 << p, base | 1 << p | 1 << q, base | 1 << q};
-      add("   {} 4", b + 1);
-      for (const int c : corners) add(" {}", c + 1);
-      add("\n     4");
-      for (std::size_t i = 0; i < 4; ++i) {
-        const int from = corners[i], to = corners[(i + 1) % 4];
-        for (std::size_t e = 0; e < edges.size(); ++e)
-          if (edges[e].corners == std::array{std::min(from, to), std::max(from, to)})
-            add(" {}", e + 1);
+    std::map<std::array<int, 2>, int> edges;
+    for (std::size_t e = 0; e < domain_.edges.size(); ++e) {
+      const auto [a, b] = domain_.edges[e].vertices;
+      edges[{std::min(a, b), std::max(a, b)}] = static_cast<int>(e) + 1;
+    }
+    add("  *face\n   {}\n", domain_.faces.size());
+    for (int d = 0; d < domain_.face_count(); ++d) {
+      const auto& loop = domain_.faces[d].loop;
+      add("   {} {}", d + 1, loop.size());
+      for (const int v : loop) add(" {}", v + 1);
+      add("\n     {}", loop.size());
+      for (std::size_t i = 0; i < loop.size(); ++i) {
+        const int from = loop[i], to = loop[(i + 1) % loop.size()];
+        add(" {}", edges.at({std::min(from, to), std::max(from, to)}));
       }
-      const double sign = b % 2 ? -1 : 1;
-      add("\n     plane\n     4 {:.17g}", b % 2 ? -tess_.size[axis] : 0.0);
-      point(sign * Vec3::Unit(axis));
-      add("\n     {}\n", box_face_names[b]);
-      list("     ", faces_on(b));
+      const Plane& plane = domain_.faces[d].plane;
+      add("\n     plane\n     4 {:.17g}", -plane.offset + 0.0);
+      point(-plane.normal + Vec3::Zero());
+      add("\n     {}\n", domain_.faces[d].name);
+      list("     ", faces_on(d));
     }
   }
 
   const Tessellation& tess_;
+  const Domain& domain_;
   std::string text_;
 };
 

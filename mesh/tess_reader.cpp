@@ -282,6 +282,7 @@ class TessReader {
     const double scale = std::abs(ratio - 1) < 1e-9 ? 1.0 : std::cbrt(ratio);
     if (low_ != Vec3::Zero() || scale != 1.0) move(scale);
     t.size = scale * size;
+    t.domain = box_domain(t.size);
   }
 
   void put_on_box(int f) {

@@ -12,6 +12,9 @@ namespace {
 
 using core::Vec3;
 
+/// Rounding of a point put on an oblique plane, relative to the domain.
+constexpr double on_plane = 1e-14;
+
 [[noreturn]] void fail(const std::string& what) {
   throw core::InternalError("tessellation: " + what);
 }
@@ -31,7 +34,8 @@ void check_sizes(const Tessellation& t) {
                      t.vertices.size(), t.topology.vertex_count, t.seeds.size(),
                      t.topology.cell_faces.size(), t.face_planes.size(), t.face_masters.size(),
                      faces));
-  if (!(t.size.minCoeff() > 0)) fail("box without volume");
+  if (!(t.domain.volume > 0)) fail("domain without volume");
+  if (t.size != t.domain.size) fail("size and domain disagree");
 }
 
 void check_vertices(const Tessellation& t) {
@@ -39,6 +43,11 @@ void check_vertices(const Tessellation& t) {
     const Vec3& x = t.vertices[i];
     if (!x.allFinite() || !(x.minCoeff() >= 0) || !((t.size - x).minCoeff() >= 0))
       fail(fmt::format("vertex {} at ({}, {}, {}) is outside the box", i, x.x(), x.y(), x.z()));
+    if (t.domain.is_box()) continue;
+    for (const DomainFace& face : t.domain.faces)
+      if (!(face.plane.normal.dot(x) - face.plane.offset <= on_plane * t.size.maxCoeff()))
+        fail(
+            fmt::format("vertex {} at ({}, {}, {}) is outside the domain", i, x.x(), x.y(), x.z()));
   }
   for (const auto& e : t.topology.edges)
     if (!((t.vertices[e.vertices[0]] - t.vertices[e.vertices[1]]).norm() > 0))
@@ -56,11 +65,12 @@ void check_face(const Tessellation& t, int f) {
       !std::isfinite(t.face_planes[f].offset))
     fail(fmt::format("face {} has no plane", f));
   if (face.domain_face >= 0) {
-    const int axis = face.domain_face / 2;
-    const double plane = face.domain_face % 2 ? t.size[axis] : 0.0;
+    const auto& [name, plane, corners] = t.domain.faces[face.domain_face];
+    const bool exact = plane.normal.cwiseAbs().maxCoeff() == 1;
+    const double tolerance = exact ? 0 : on_plane * t.size.maxCoeff();
     for (const Vec3& x : loop)
-      if (x[axis] != plane)
-        fail(fmt::format("face {} leaves the domain face {}", f, box_face_names[face.domain_face]));
+      if (!(std::abs(plane.normal.dot(x) - plane.offset) <= tolerance))
+        fail(fmt::format("face {} leaves the domain face {}", f, name));
   }
   if (!unfolded_in_projection(loop, master)) fail(fmt::format("face {} is folded", f));
 }
@@ -99,7 +109,7 @@ double cell_volume(const Tessellation& tessellation, int cell) {
 }
 
 void Tessellation::check() const {
-  topology.check();
+  topology.check(domain.face_count());
   check_sizes(*this);
   check_vertices(*this);
   for (int f = 0; f < static_cast<int>(topology.faces.size()); ++f) check_face(*this, f);
@@ -109,8 +119,8 @@ void Tessellation::check() const {
     if (!(volume > 0)) fail(fmt::format("cell {} has volume {}", c, volume));
     total += volume;
   }
-  if (!(std::abs(total - size.prod()) <= 1e-11 * size.prod()))
-    fail(fmt::format("cells add up to {} in a box of {}", total, size.prod()));
+  if (!(std::abs(total - domain.volume) <= 1e-11 * domain.volume))
+    fail(fmt::format("cells add up to {} in a domain of {}", total, domain.volume));
 }
 
 }  // namespace polyslip::mesh

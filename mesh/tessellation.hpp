@@ -1,5 +1,5 @@
 #pragma once
-// Voronoi tessellation of a box, before and after regularisation.
+// Voronoi tessellation of a convex domain, before and after regularisation.
 
 #include <array>
 #include <cstdint>
@@ -7,15 +7,10 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/domain.hpp"
 #include "mesh/topology.hpp"
 
 namespace polyslip::mesh {
-
-/// n . x = d, |n| = 1
-struct Plane {
-  core::Vec3 normal = core::Vec3::UnitX();
-  double offset = 0;
-};
 
 /// What a deck asks for in [polycrystal].
 struct PolycrystalOptions {
@@ -50,10 +45,11 @@ struct RegularisationOptions {
   }
 };
 
-/// A box [0, size] cut into cells with shared vertices, edges and faces.
+/// A convex domain cut into cells with shared vertices, edges and faces.
 struct Tessellation {
   Topology topology;
-  core::Vec3 size{1, 1, 1};          ///< box, edge lengths; mean cell volume is 1
+  Domain domain = box_domain({1, 1, 1});
+  core::Vec3 size{1, 1, 1};          ///< of the domain's bounding box; mean cell volume is 1
   std::vector<core::Vec3> seeds;     ///< one a cell
   std::vector<core::Vec3> vertices;  ///< [topology.vertex_count]
   std::vector<Plane> face_planes;    ///< the face's plane in the Voronoi tessellation (eq. 2)
@@ -61,9 +57,9 @@ struct Tessellation {
   /// face's vertices, i >= 0 the i-th vertex of its loop.
   std::vector<int> face_masters;
 
-  /// Throws InternalError unless the topology holds, vertices lie in the box and those of domain
-  /// faces exactly on them, faces are unfolded in projection along their mean normal, and cells
-  /// have positive volumes that add up to the box.
+  /// Throws InternalError unless the topology holds, vertices lie in the domain and those of domain
+  /// faces on them (exactly if these lie along the axes), faces are unfolded in projection along
+  /// their mean normal, and cells have positive volumes that add up to the domain's.
   void check() const;
 };
 
@@ -91,10 +87,12 @@ core::Vec3 box_size(const PolycrystalOptions& options);
 /// result, on any machine or rank count.
 Tessellation voronoi_tessellation(const PolycrystalOptions& options);
 
-/// Voronoi tessellation of given seeds, which lie inside the box [0, size] (InputError otherwise,
+/// Voronoi tessellation of given seeds, which lie inside the domain (InputError otherwise,
 /// or if two coincide). Vertices within 1e-10 of the cell size are one; where that leaves cells
 /// that disagree (more than four that nearly meet in a point), within 1e-9, 1e-8 or 1e-7. Seeds
 /// that miss a grid by about 1e-11 are moved onto it.
+Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const Domain& domain);
+/// In the box [0, size].
 Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const core::Vec3& size);
 
 /// Removes short edges (section 2.1.2 of the paper). Every cell remains a polyhedron that is seen

@@ -53,14 +53,14 @@ void check_loop(const Topology& t, int f) {
   if (twice != vertices.end()) fail(fmt::format("face {} meets vertex {} twice", f, *twice));
 }
 
-void check_face_cells(const Topology& t, int f) {
+void check_face_cells(const Topology& t, int f, int domain_faces) {
   const auto& face = t.faces[f];
   const auto [inside, outside] = face.cells;
   if (!in_range(inside, t.cell_count()) || outside >= t.cell_count() || outside < -1)
     fail(fmt::format("face {} lies between cells {} and {} of {}", f, inside, outside,
                      t.cell_count()));
   if (inside == outside) fail(fmt::format("face {} has cell {} on both sides", f, inside));
-  if (face.domain_face < -1 || face.domain_face > 5)
+  if (face.domain_face < -1 || face.domain_face >= domain_faces)
     fail(fmt::format("face {} has domain face {}", f, face.domain_face));
   if ((outside == -1) != (face.domain_face >= 0))
     fail(fmt::format("face {} has outer cell {} and domain face {}", f, outside, face.domain_face));
@@ -145,12 +145,12 @@ std::vector<int> Topology::face_vertices(int face) const {
   return vertices;
 }
 
-void Topology::check() const {
+void Topology::check(int domain_faces) const {
   if (cell_faces.empty()) fail("no cells");
   check_edges(*this);
   for (int f = 0; f < count(faces.size()); ++f) {
     check_loop(*this, f);
-    check_face_cells(*this, f);
+    check_face_cells(*this, f, domain_faces);
   }
   check_cell_lists(*this);
   for (int c = 0; c < cell_count(); ++c) check_cell_surface(*this, c);

@@ -21,7 +21,7 @@ struct TopologyFace {
   std::array<int, 2> cells{-1,
                            -1};  ///< the normal (right-hand rule on the loop) points out of
                                  ///< cells[0] into cells[1]; cells[1] = -1 on the domain boundary
-  int domain_face = -1;          ///< 0 ... 5 on the domain boundary, else -1
+  int domain_face = -1;          ///< index of Domain::faces on the domain boundary, else -1
 };
 
 /// Ids are 0-based indices; files add one.
@@ -36,8 +36,8 @@ struct Topology {
   std::vector<int> face_vertices(int face) const;
   /// Throws InternalError if an invariant fails: loops closed, ids in range, each edge of a cell in
   /// exactly two of its faces, Euler's formula V - E + F = 2 for each cell (degree-two vertices
-  /// included), cells[1] = -1 iff domain_face >= 0.
-  void check() const;
+  /// included), cells[1] = -1 iff domain_face >= 0, below the number of the domain's faces.
+  void check(int domain_faces = 6) const;
 };
 
 }  // namespace polyslip::mesh

@@ -1,6 +1,6 @@
-// The conforming tessellation of a box: cells that were computed one by one are given shared
-// vertices, edges and faces. A vertex is first known by the four cells and walls that meet there;
-// where more than four meet (grids of seeds), vertices that coincide are merged.
+// The conforming tessellation of a convex domain: cells that were computed one by one are given
+// shared vertices, edges and faces. A vertex is first known by the four cells and walls that meet
+// there; where more than four meet (grids of seeds), vertices that coincide are merged.
 
 #include <fmt/format.h>
 
@@ -43,7 +43,7 @@ class UnionFind {
 struct LocalVertices {
   std::vector<int> first;
   std::vector<Vec3> positions;
-  std::vector<unsigned> walls;  ///< bit w: on wall w
+  std::vector<std::vector<int>> walls;  ///< faces of the domain at each
   /// The four cells and walls that meet at a vertex, ascending; all -7 if there are more.
   std::vector<std::array<int, 4>> keys;
 };
@@ -60,13 +60,13 @@ LocalVertices collect(const std::vector<SeparateCell>& cells) {
       for (const int v : face.loop) around[v].push_back(face.neighbour);
     for (std::size_t v = 0; v < cell.vertices.size(); ++v) {
       auto& key = around[v];
-      unsigned walls = 0;
+      std::vector<int> walls;
       for (const int neighbour : key)
-        if (neighbour < 0) walls |= 1U << wall_of_neighbour(neighbour);
+        if (neighbour < 0) walls.push_back(wall_of_neighbour(neighbour));
       key.push_back(c);
       std::sort(key.begin(), key.end());
       all.positions.push_back(cell.vertices[v]);
-      all.walls.push_back(walls);
+      all.walls.push_back(std::move(walls));
       all.keys.push_back(key.size() == 4 ? std::array<int, 4>{key[0], key[1], key[2], key[3]}
                                          : no_key);
     }
@@ -127,10 +127,12 @@ bool same_loop_reversed(const Loop& p, Loop q) {
 
 class Assembly {
  public:
-  Assembly(const std::vector<SeparateCell>& cells, const std::vector<Vec3>& seeds, const Vec3& size)
+  Assembly(const std::vector<SeparateCell>& cells, const std::vector<Vec3>& seeds,
+           const Domain& domain)
       : cells_(cells), all_(collect(cells)) {
     result_.seeds = seeds;
-    result_.size = size;
+    result_.domain = domain;
+    result_.size = domain.size;
   }
 
   /// Empty if cells do not agree on the faces between them: the tolerance was too small.
@@ -147,7 +149,7 @@ class Assembly {
       for (std::size_t i = 0; i < cells_[c].faces.size(); ++i)
         if (!add_face(c, i)) return std::nullopt;
     try {
-      result_.topology.check();
+      result_.topology.check(result_.domain.face_count());
     } catch (const core::InternalError&) {
       return std::nullopt;
     }
@@ -161,6 +163,7 @@ class Assembly {
     join_equal_keys(all_, 1e6 * tolerance, sets);
     join_coincident(all_, tolerance, sets);
     vertex_ids_.assign(n, -1);
+    std::vector<std::array<int, 2>> walls;
     for (int i = 0; i < static_cast<int>(n); ++i) {
       const int root = sets.root(i);
       if (root == i) {
@@ -168,14 +171,19 @@ class Assembly {
         result_.vertices.push_back(all_.positions[i].cwiseMax(0).cwiseMin(result_.size));
       }
       vertex_ids_[i] = vertex_ids_[root];
-      snap(all_.walls[i], result_.vertices[vertex_ids_[i]]);
+      for (const int w : all_.walls[i]) walls.push_back({vertex_ids_[i], w});
     }
+    snap({result_.vertices.size(), std::move(walls)});
     result_.topology.vertex_count = static_cast<int>(result_.vertices.size());
   }
 
-  void snap(unsigned walls, Vec3& x) const {
-    for (int w = 0; w < 6; ++w)
-      if (walls >> w & 1U) x[w / 2] = w % 2 ? result_.size[w / 2] : 0.0;
+  void snap(const DomainFaceLists& walls) {
+    std::vector<Plane> planes;
+    for (std::size_t v = 0; v < result_.vertices.size(); ++v) {
+      planes.clear();
+      for (const int w : walls[v]) planes.push_back(result_.domain.faces[w].plane);
+      if (!planes.empty()) put_on_planes(planes, result_.vertices[v]);
+    }
   }
 
   void map_loops() {
@@ -235,16 +243,11 @@ class Assembly {
   }
 
   Plane plane_between(int cell, int neighbour) const {
+    if (neighbour < 0) return result_.domain.faces[wall_of_neighbour(neighbour)].plane;
     Plane plane;
-    if (neighbour < 0) {
-      const int wall = wall_of_neighbour(neighbour);
-      plane.normal = Vec3::Unit(wall / 2) * (wall % 2 ? 1.0 : -1.0);
-      plane.offset = wall % 2 ? result_.size[wall / 2] : 0.0;
-    } else {
-      const Vec3 &p = result_.seeds[cell], &q = result_.seeds[neighbour];
-      plane.normal = (q - p).normalized();
-      plane.offset = plane.normal.dot(0.5 * (p + q));
-    }
+    const Vec3 &p = result_.seeds[cell], &q = result_.seeds[neighbour];
+    plane.normal = (q - p).normalized();
+    plane.offset = plane.normal.dot(0.5 * (p + q));
     return plane;
   }
 
@@ -256,48 +259,68 @@ class Assembly {
   std::unordered_map<std::uint64_t, int> edge_ids_;
 };
 
-std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds, const Vec3& size) {
-  const auto cells = separate_voronoi_cells(seeds, size);
-  const double cell_size = std::cbrt(size.prod() / static_cast<double>(seeds.size()));
-  Assembly assembly(cells, seeds, size);
+std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds, const Domain& domain) {
+  const auto cells = separate_voronoi_cells(seeds, domain);
+  const double cell_size = std::cbrt(domain.volume / static_cast<double>(seeds.size()));
+  Assembly assembly(cells, seeds, domain);
   for (double tolerance : {1e-10, 1e-9, 1e-8, 1e-7})
     if (auto result = assembly.build(tolerance * cell_size)) return result;
   return std::nullopt;
 }
 
+bool inside(const Vec3& x, const Domain& domain) {
+  if (!x.allFinite()) return false;
+  return std::all_of(domain.faces.begin(), domain.faces.end(), [&](const DomainFace& face) {
+    return face.plane.normal.dot(x) <= face.plane.offset;
+  });
+}
+
+void check_inside(const std::vector<Vec3>& seeds, const Domain& domain) {
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    if (!inside(seeds[i], domain))
+      throw core::InputError(
+          fmt::format("seed {} at ({}, {}, {}) lies outside the {} [{}, {}, {}]: move it inside",
+                      i + 1, seeds[i].x(), seeds[i].y(), seeds[i].z(), domain.shape,
+                      domain.size.x(), domain.size.y(), domain.size.z()));
+}
+
+/// Points with the same chance everywhere in the domain.
+std::vector<Vec3> random_points(const Domain& domain, int count, std::uint64_t seed) {
+  core::Random random(seed, core::Stream::seeds);
+  std::vector<Vec3> points;
+  while (static_cast<int>(points.size()) < count) {
+    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
+    const Vec3 point = Vec3(x, y, z).cwiseProduct(domain.size);
+    if (inside(point, domain)) points.push_back(point);
+  }
+  return points;
+}
+
 }  // namespace
 
-Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Vec3& size) {
+Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Domain& domain) {
   if (seeds.empty()) throw core::InputError("a tessellation needs at least one seed");
-  if (!size.allFinite() || !(size.minCoeff() > 0))
-    throw core::InputError(
-        fmt::format("box [{}, {}, {}]: lengths must be positive", size.x(), size.y(), size.z()));
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    if (!seeds[i].allFinite() || !(seeds[i].minCoeff() >= 0) ||
-        !((size - seeds[i]).minCoeff() >= 0))
-      throw core::InputError(fmt::format(
-          "seed {} at ({}, {}, {}) lies outside the box [{}, {}, {}]: move it inside", i + 1,
-          seeds[i].x(), seeds[i].y(), seeds[i].z(), size.x(), size.y(), size.z()));
-  if (auto result = assemble(seeds, size)) return std::move(*result);
+  check_inside(seeds, domain);
+  if (auto result = assemble(seeds, domain)) return std::move(*result);
   // Seeds that miss a grid by about the rounding of the cells (1e-11): put them on one.
   auto rounded = seeds;
   const double step = 0x1.0p-27;
-  for (Vec3& x : rounded)
+  for (Vec3& x : rounded) {
     for (double& xi : x) xi = std::round(xi / step) * step;
-  for (Vec3& x : rounded) x = x.cwiseMin(size);
-  if (auto result = assemble(rounded, size)) return std::move(*result);
+    x = x.cwiseMin(domain.size);
+  }
+  if (auto result = assemble(rounded, domain)) return std::move(*result);
   throw core::InternalError("tessellation: neighbouring cells disagree on the face between them");
 }
 
+Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Vec3& size) {
+  if (seeds.empty()) throw core::InputError("a tessellation needs at least one seed");
+  return voronoi_tessellation(seeds, box_domain(size));
+}
+
 Tessellation voronoi_tessellation(const PolycrystalOptions& options) {
-  const Vec3 size = box_size(options);
-  core::Random random(options.seed, core::Stream::seeds);
-  std::vector<Vec3> seeds;
-  for (int i = 0; i < options.grains; ++i) {
-    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    seeds.push_back(Vec3(x, y, z).cwiseProduct(size));
-  }
-  return voronoi_tessellation(seeds, size);
+  const Domain domain = box_domain(box_size(options));
+  return voronoi_tessellation(random_points(domain, options.grains, options.seed), domain);
 }
 
 }  // namespace polyslip::mesh

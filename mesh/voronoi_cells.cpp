@@ -13,6 +13,9 @@ namespace {
 
 using core::Vec3;
 
+/// The library calls the walls of its box -1 to -6; planes of the domain come after them.
+constexpr int library_walls = 6;
+
 int block_count(double length, double blocks_per_length) {
   return std::max(1, static_cast<int>(length * blocks_per_length));
 }
@@ -51,14 +54,47 @@ void orient_outwards(SeparateCell& cell, const Vec3& seed) {
   for (auto& face : cell.faces) std::reverse(face.loop.begin(), face.loop.end());
 }
 
+void name_planes(SeparateCell& cell) {
+  for (auto& face : cell.faces) {
+    if (face.neighbour >= 0) continue;
+    face.neighbour += library_walls;
+    if (face.neighbour >= 0)
+      throw core::InternalError("tessellation: a cell reaches beyond the domain's planes");
+  }
+}
+
+// The planes of the domain that cut the cell. False if nothing of the cell is left.
+bool cut_by_planes(voro::voronoicell_neighbor& cell, const Vec3& seed, const Domain& domain) {
+  std::vector<double> x;
+  cell.vertices(x);  // relative to the seed
+  for (int f = 0; f < domain.face_count(); ++f) {
+    const Vec3& n = domain.faces[f].plane.normal;
+    const double distance = domain.faces[f].plane.offset - n.dot(seed);
+    double farthest = 0;
+    for (std::size_t i = 0; i + 2 < x.size(); i += 3)
+      farthest = std::max(farthest, n.x() * x[i] + n.y() * x[i + 1] + n.z() * x[i + 2]);
+    if (farthest < distance) continue;
+    // The plane's distance, doubled as the library wants it.
+    if (!cell.nplane(n.x(), n.y(), n.z(), 2 * distance, wall_neighbour(f) - library_walls))
+      return false;
+    cell.vertices(x);
+  }
+  return true;
+}
+
 }  // namespace
 
-std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds, const Vec3& size) {
+std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
+                                                 const Domain& domain) {
   const double n = static_cast<double>(seeds.size());
-  const double per_length = std::cbrt(n / (voro::optimal_particles * size.prod()));
-  voro::container box(0, size.x(), 0, size.y(), 0, size.z(), block_count(size.x(), per_length),
-                      block_count(size.y(), per_length), block_count(size.z(), per_length), false,
-                      false, false, 8);
+  const double per_length = std::cbrt(n / (voro::optimal_particles * domain.volume));
+  // A domain that is no box lies well inside the library's box, whose walls its planes cut off.
+  const Vec3& size = domain.size;
+  const Vec3 margin = domain.is_box() ? Vec3(Vec3::Zero()) : Vec3(0.1 * size);
+  const Vec3 low = -margin, high = size + margin;
+  voro::container box(low.x(), high.x(), low.y(), high.y(), low.z(), high.z(),
+                      block_count(size.x(), per_length), block_count(size.y(), per_length),
+                      block_count(size.z(), per_length), false, false, false, 8);
   for (std::size_t i = 0; i < seeds.size(); ++i)
     box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z());
 
@@ -68,8 +104,10 @@ std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
   if (loop.start()) do {
       if (!box.compute_cell(cell, loop)) continue;
       const auto id = static_cast<std::size_t>(loop.pid());
+      if (!domain.is_box() && !cut_by_planes(cell, seeds[id], domain)) continue;
       cells[id] = read_cell(cell, seeds[id]);
       orient_outwards(cells[id], seeds[id]);
+      if (!domain.is_box()) name_planes(cells[id]);
     } while (loop.inc());
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i].faces.size() < 4)

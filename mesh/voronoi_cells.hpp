@@ -4,10 +4,11 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/domain.hpp"
 
 namespace polyslip::mesh {
 
-/// Neighbour ids below zero are walls of the box: wall_neighbour(w) for w = x0 x1 y0 y1 z0 z1.
+/// Neighbour ids below zero are faces of the domain.
 constexpr int wall_neighbour(int wall) { return -1 - wall; }
 constexpr int wall_of_neighbour(int neighbour) { return -1 - neighbour; }
 
@@ -21,9 +22,9 @@ struct SeparateCell {
   std::vector<SeparateFace> faces;
 };
 
-/// One cell a seed, clipped by the box [0, size]. The seeds lie in the box. Throws InputError if a
-/// seed has no cell (two seeds coincide).
+/// One cell a seed, clipped by the domain. The seeds lie in it. Throws InputError if a seed has no
+/// cell (two seeds coincide).
 std::vector<SeparateCell> separate_voronoi_cells(const std::vector<core::Vec3>& seeds,
-                                                 const core::Vec3& size);
+                                                 const Domain& domain);
 
 }  // namespace polyslip::mesh

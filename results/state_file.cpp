@@ -240,6 +240,7 @@ mesh::Mesh read_mesh(TableReader& r, const std::string& path) {
   m.order = r.get_scalar<std::int32_t>("mesh/order");
   const auto size = r.get<double>("mesh/size");
   m.size = core::Vec3(size[0], size[1], size[2]);
+  m.domain = mesh::box_domain(m.size);
   const auto nodes = r.get<double>("mesh/nodes");
   for (std::size_t i = 0; i + 2 < nodes.size(); i += 3)
     m.nodes.emplace_back(nodes[i], nodes[i + 1], nodes[i + 2]);

@@ -188,6 +188,7 @@ Mesh box_mesh(const std::array<int, 3>& cells, const Vec3& size, int slabs) {
   if (cells[0] % slabs != 0) throw std::invalid_argument("box_mesh: cells along x, slabs");
   Builder builder{cells, slabs, {}};
   builder.mesh.size = size;
+  builder.mesh.domain = mesh::box_domain(size);
   builder.make_nodes();
   builder.make_tetrahedra();
   builder.make_topology();

@@ -321,7 +321,7 @@ TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
 
 TEST(MeshGeometry, RefusesAFirstMeshThatDoesNotFillTheBox) {
   Geometry g = cubes(2);
-  g.size[0] *= 1 + 1e-11;
+  g.domain.volume *= 1 + 1e-11;
   MeshingReport report;
   EXPECT_THROW(star_mesh(g, options_of(0.5), report), core::InternalError);
 }
