@@ -22,6 +22,14 @@ void add_threads(CLI::App& verb, Command& c) {
       ->capture_default_str();
 }
 
+void add_jobs(CLI::App& verb, Command& c) {
+  verb.add_option(
+          "--jobs", c.jobs,
+          "Mesher processes and threads of meshing (default: one a core); the mesh does not "
+          "depend on it")
+      ->check(CLI::Range(1, 1024));
+}
+
 void add_overwrite(CLI::App& verb, Command& c, const char* what) {
   verb.add_flag("--overwrite", c.overwrite, what);
 }
@@ -36,6 +44,7 @@ void add_run(CLI::App& app, Command& c) {
       ->excludes(out);
   add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
+  add_jobs(*verb, c);
   verb->callback([&c] {
     c.verb = Verb::run;
     if (c.deck.empty() && c.restart.empty())
@@ -59,6 +68,7 @@ void add_mesh(CLI::App& app, Command& c) {
   verb->add_option("--out", c.out, "Folder")->required();
   add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
+  add_jobs(*verb, c);
   verb->callback([&c] { c.verb = Verb::mesh; });
 }
 

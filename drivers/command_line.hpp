@@ -17,6 +17,7 @@ struct Command {
   bool overwrite = false;
   std::string restart;  ///< --restart
   int threads = 1;
+  int jobs = 0;  ///< --jobs; 0: one a core
   std::string folder;  ///< convert
   double at_strain = 0;
   std::string to;

@@ -89,6 +89,11 @@ Input read_input(const Options& options) {
     counted.polycrystal.grains = input.mesh->mesh.topology.cell_count();
     given = &input.mesh->orientations;
   }
+  if (const auto given_sizes = options.mesh.grain_element_sizes.size();
+      given_sizes != 0 && given_sizes != static_cast<std::size_t>(counted.polycrystal.grains))
+    throw core::InputError(
+        fmt::format("[mesh] grain_element_sizes: {} numbers for {} grains; give one a grain",
+                    given_sizes, counted.polycrystal.grains));
   input.orientations_of_input =
       options.orientations.distribution == "input" && given && given->has_value();
   input.orientations = input.orientations_of_input ? **given : grain_orientations(counted);

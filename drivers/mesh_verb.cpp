@@ -13,11 +13,12 @@
 
 namespace polyslip::drivers {
 
-void make_mesh(const std::string& deck_path, const std::string& folder, bool overwrite,
+void make_mesh(const std::string& deck_path, const std::string& folder, bool overwrite, int jobs,
                mesh::MesherPool& pool) {
   const double wall_start = core::wall_seconds();
   core::Deck deck = core::Deck::from_file(deck_path);
-  const Options options = read_options(deck, Purpose::mesh);
+  Options options = read_options(deck, Purpose::mesh);
+  options.mesh.jobs = jobs;
   results::check_deck_place(folder, deck.text(), overwrite);
   Input input = read_input(options);
   results::prepare_run_folder(folder, overwrite);

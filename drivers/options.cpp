@@ -147,6 +147,19 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
                                              .min = 0.01,
                                              .max = 10,
                                              .help = "c_l: length of element edges."});
+  o.outer_element_size = t.optional_number(
+      "element_size_outer", {.unit = "length",
+                             .min = 0.01,
+                             .max = 10,
+                             .help = "c_l of grains with a face on the domain boundary; if left "
+                                     "out, that of all."});
+  o.grain_element_sizes =
+      t.numbers("grain_element_sizes", {.unit = "length",
+                                        .fallback = o.grain_element_sizes,
+                                        .min = 0.01,
+                                        .max = 10,
+                                        .help = "c_l of each grain, in the order of their numbers; "
+                                                "if left out, the two keys above."});
   o.progression_factor =
       t.number("progression_factor", {.fallback = o.progression_factor,
                                       .min = 1,
@@ -158,11 +171,21 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
                 .min = 1,
                 .max = 2,
                 .help = "Order of the elements: 2 for a run; 1 may be asked of `polyslip mesh`."}));
-  o.meshers = t.texts("meshers", {.fallback = o.meshers,
-                                  .choices = {"gmsh-hxt", "gmsh-delaunay", "netgen"},
-                                  .unique = true,
-                                  .not_empty = true,
-                                  .help = "Meshers to try on each grain; the best mesh wins."});
+  o.meshers =
+      t.texts("meshers", {.fallback = o.meshers,
+                          .choices = {mesh::known_meshers.begin(), mesh::known_meshers.end()},
+                          .unique = true,
+                          .not_empty = true,
+                          .help = "Meshers to try on each grain; the best mesh wins. Those "
+                                  "after the first are tried on grains that miss a stated "
+                                  "quality so far. `gmsh-hxt`, `gmsh-delaunay` and `netgen` "
+                                  "are followed by our optimiser, the others not: "
+                                  "`paper-1` and `paper-2` are those of the paper."});
+  o.slide_boundary = t.boolean(
+      "slide_boundary", {.fallback = o.slide_boundary,
+                         .help = "Whether nodes of grain boundaries slide in their faces and along "
+                                 "their edges to where the elements on all sides are best, and "
+                                 "grains are optimised once more."});
   o.mesher_timeout = t.number("mesher_timeout",
                               {.unit = "s",
                                .fallback = o.mesher_timeout,

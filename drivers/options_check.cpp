@@ -100,6 +100,12 @@ void check_strains(Deck& deck, const Options& o) {
 void check_options(Deck& deck, const Options& options, Purpose purpose) {
   check_input(deck, options);
   check_orientations(deck, options.orientations);
+  const auto sizes = options.mesh.grain_element_sizes.size();
+  if (sizes != 0 && !options.input.any() &&
+      sizes != static_cast<std::size_t>(options.polycrystal.grains))
+    deck.fault("mesh", "grain_element_sizes",
+               fmt::format("{} numbers for {} grains; give one a grain", sizes,
+                           options.polycrystal.grains));
   check_material(deck, options.material);
   check_loading(deck, options.loading);
   check_strains(deck, options);

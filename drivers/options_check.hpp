@@ -11,6 +11,7 @@ namespace polyslip::drivers {
 ///   gs > g0, or gs = g0 without hardening;
 ///   the smallest step is below the first;
 ///   0 < remeshing strains < final strain; 0 <= output strains <= final strain;
+///   element sizes for as many grains as there are;
 ///   elements of order 2 for a run.
 void check_options(core::Deck& deck, const Options& options, Purpose purpose);
 

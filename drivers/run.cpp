@@ -107,6 +107,7 @@ void Run::read_deck() {
   const auto understand = [&] {
     core::Deck deck = core::Deck::from_text(text, file);
     options_ = read_options(deck, Purpose::run);
+    options_.mesh.jobs = request_.jobs;
     resolved_ = deck.resolved();
     fingerprint_ = deck.fingerprint();
   };

@@ -17,6 +17,7 @@ struct RunRequest {
   std::string folder;  ///< run folder
   bool overwrite = false;
   bool restart = false;
+  int jobs = 0;  ///< mesher processes and threads of meshing; 0: one a core
 };
 
 /// The whole job. Collective. Returns `exit_fine`, or `exit_stopped` when a step or a remeshing

@@ -53,6 +53,7 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
       options_(options),
       scale_(scale),
       vertices_(geometry.vertices),
+      sizes_(element_sizes(geometry.topology, options)),
       edges_(geometry.edges.size()),
       faces_(geometry.faces.size()),
       cut_arcs_(geometry.edges.size()),
@@ -64,8 +65,8 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
   find_planes();
   for (const auto& shape : geometry.edges)
     edge_lengths_.push_back(CurvedEdge(shape, scale).length());
-  const auto sizes = vertex_sizes(geometry.topology, edge_lengths_, options.element_size,
-                                  options.progression_factor);
+  const auto sizes =
+      vertex_sizes(geometry.topology, edge_lengths_, sizes_.edges, options.progression_factor);
   for (const auto& edge : geometry.topology.edges)
     end_sizes_.push_back({sizes[edge.vertices[0]], sizes[edge.vertices[1]]});
 }
@@ -231,7 +232,7 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
   FaceMesh& result = faces_[face];
   result = {};
   PlanarProblem problem;
-  problem.element_size = options_.element_size;
+  problem.element_size = sizes_.faces[face];
   problem.progression_factor = options_.progression_factor;
   problem.forbidden_edges = forbidden_[face];
   const auto boundary_nodes = face_nodes(face, numbers);

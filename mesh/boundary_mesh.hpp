@@ -58,6 +58,8 @@ class BoundaryMesher {
   /// that cannot be meshed is copied; RecoverableError, naming it and why, if it cannot be.
   std::vector<int> update();
 
+  /// c_l of a grain.
+  double grain_size(int grain) const { return sizes_.grains[grain]; }
   const Geometry& geometry() const { return geometry_; }
   const core::Vec3& scale() const { return scale_; }
   /// The point of an edge at an arc length, exactly in the planes that the edge lies in.
@@ -130,6 +132,7 @@ class BoundaryMesher {
   std::vector<std::optional<Plane>> planes_;  ///< [domain faces] of those that are flat
   DomainFaceLists vertex_planes_, edge_planes_;
   std::vector<core::Vec3> vertices_;
+  ElementSizes sizes_;
   std::vector<double> edge_lengths_;
   std::vector<std::array<double, 2>> end_sizes_;  ///< [edges] sizes that its grading starts from
   std::vector<EdgeMesh> edges_;

@@ -23,7 +23,7 @@ constexpr int balancing_rounds = 100;
 
 std::vector<double> BoundaryMesher::graded_arcs(int edge, int least_count) const {
   return edge_nodes(edge_lengths_[edge], end_sizes_[edge][0], end_sizes_[edge][1],
-                    options_.element_size, options_.progression_factor, least_count);
+                    sizes_.edges[edge], options_.progression_factor, least_count);
 }
 
 void BoundaryMesher::mesh_edges() {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,8 +45,10 @@ Geometry geometry_of(const Mesh& mesh);
 
 /// What a deck asks for in [mesh].
 struct MeshingOptions {
-  double element_size = 0.5;        ///< c_l, for grains of unit mean volume
-  double progression_factor = 2.0;  ///< p_l
+  double element_size = 0.5;                 ///< c_l, for grains of unit mean volume
+  std::optional<double> outer_element_size;  ///< c_l of grains with a face on the domain boundary
+  std::vector<double> grain_element_sizes;   ///< [grains] c_l of each, above the others; or none
+  double progression_factor = 2.0;           ///< p_l
   int order = 2;
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
   double mesher_timeout = 60;  ///< seconds of CPU a grain and candidate

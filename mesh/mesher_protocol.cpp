@@ -102,6 +102,7 @@ Bytes encode(const Batch& batch) {
   w.put<std::uint64_t>(batch.grains.size());
   for (const auto& grain : batch.grains) {
     w.put(grain.grain);
+    w.put(grain.element_size);
     w.put(grain.surface.nodes);
     w.put(grain.surface.triangles);
   }
@@ -140,6 +141,7 @@ Batch decode_batch(const Bytes& payload) {
   for (std::uint64_t i = 0; i < count; ++i) {
     GrainRequest grain;
     grain.grain = r.get<int>();
+    grain.element_size = r.get<double>();
     grain.surface.nodes = r.get_points();
     grain.surface.triangles = r.get_rows<3>();
     batch.grains.push_back(std::move(grain));

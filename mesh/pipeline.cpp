@@ -95,7 +95,8 @@ class Pipeline {
     for (int grain = 0; grain < topology.cell_count(); ++grain)
       if (stale[grain])
         requests.push_back(
-            {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh});
+            {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh,
+             boundary_.grain_size(grain)});
     auto answers = meshers_(requests);
     if (answers.size() != requests.size())
       throw core::InternalError(

@@ -125,12 +125,37 @@ Vec3 CurvedEdge::at(double s) const {
   return (1 - t) * (1 - 2 * t) * a + 4 * t * (1 - t) * m + t * (2 * t - 1) * b;
 }
 
+ElementSizes element_sizes(const Topology& topology, const MeshingOptions& options) {
+  const auto grains = static_cast<std::size_t>(topology.cell_count());
+  constexpr double none = std::numeric_limits<double>::infinity();
+  ElementSizes sizes{std::vector<double>(grains, options.element_size),
+                     std::vector<double>(topology.faces.size(), none),
+                     std::vector<double>(topology.edges.size(), none)};
+  if (options.outer_element_size)
+    for (const auto& face : topology.faces)
+      if (face.domain_face >= 0) sizes.grains[face.cells[0]] = *options.outer_element_size;
+  if (!options.grain_element_sizes.empty()) {
+    if (options.grain_element_sizes.size() != grains)
+      throw core::InputError(
+          fmt::format("[mesh] grain_element_sizes: {} numbers for {} grains; give one a grain",
+                      options.grain_element_sizes.size(), grains));
+    sizes.grains = options.grain_element_sizes;
+  }
+  for (std::size_t f = 0; f < topology.faces.size(); ++f) {
+    for (const int c : topology.faces[f].cells)
+      if (c >= 0) sizes.faces[f] = std::min(sizes.faces[f], sizes.grains[c]);
+    for (const int e : topology.faces[f].edges)
+      sizes.edges[e] = std::min(sizes.edges[e], sizes.faces[f]);
+  }
+  return sizes;
+}
+
 std::vector<double> vertex_sizes(const Topology& topology, const std::vector<double>& edge_lengths,
-                                 double element_size, double progression_factor) {
-  std::vector<double> sizes(topology.vertex_count, element_size);
+                                 const std::vector<double>& edge_sizes, double progression_factor) {
+  std::vector<double> sizes(topology.vertex_count, std::numeric_limits<double>::infinity());
   for (std::size_t e = 0; e < topology.edges.size(); ++e)
     for (int v : topology.edges[e].vertices)
-      sizes[v] = std::min(sizes[v], progression_factor * edge_lengths[e]);
+      sizes[v] = std::min({sizes[v], edge_sizes[e], progression_factor * edge_lengths[e]});
   return sizes;
 }
 

@@ -28,10 +28,18 @@ class CurvedEdge {
   std::vector<double> ends_;  ///< arc length at the start of each segment, and at the end
 };
 
-/// Characteristic length of each vertex: c_l, or p_l times its shortest edge if that is shorter
-/// than c_l (and at most c_l). `edge_lengths` as of CurvedEdge::length.
+/// c_l by entity: of a grain what the options say, of a face and an edge the least of the grains
+/// around.
+struct ElementSizes {
+  std::vector<double> grains, faces, edges;
+};
+/// Throws InputError if there is a list of sizes for another number of grains.
+ElementSizes element_sizes(const Topology& topology, const MeshingOptions& options);
+
+/// Characteristic length of each vertex: the least c_l of its edges, or p_l times its shortest edge
+/// if that is less. `edge_lengths` as of CurvedEdge::length; `edge_sizes`: c_l of each edge.
 std::vector<double> vertex_sizes(const Topology& topology, const std::vector<double>& edge_lengths,
-                                 double element_size, double progression_factor);
+                                 const std::vector<double>& edge_sizes, double progression_factor);
 
 /// Arc lengths 0 ... length of the nodes of an edge whose vertices have the sizes `from` and `to`:
 /// elements grow by p_l from the vertices up to c_l; adjacent ones differ by no more than p_l (to

@@ -11,8 +11,12 @@
 namespace polyslip::mesh {
 
 /// Names that a deck may list: Gmsh's HXT and Delaunay, Netgen; each with its optimiser, Gmsh's and
-/// ours (mesh/tetrahedral_optimiser.hpp).
-inline const std::array<std::string, 3> known_meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+/// ours (mesh/tetrahedral_optimiser.hpp). Gmsh's two without ours. The paper's two (section 2.2.2),
+/// without ours and at c_l as they stand there: Netgen without its optimiser and with it, then
+/// Gmsh's optimiser.
+inline const std::array<std::string, 7> known_meshers{
+    "gmsh-hxt", "gmsh-delaunay", "netgen", "gmsh-hxt-plain", "gmsh-delaunay-plain",
+    "paper-1",  "paper-2"};
 
 /// Closed surface, outward normals, no unused nodes.
 struct SurfaceMesh {
@@ -29,6 +33,7 @@ struct VolumeMesh {
 struct GrainRequest {
   int grain = 0;
   SurfaceMesh surface;
+  double element_size = 0;  ///< c_l of this grain; 0: that of the pool's options
 };
 
 struct GrainResult {

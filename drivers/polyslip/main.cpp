@@ -48,7 +48,8 @@ int run(const Command& command) {
                         {.deck = command.deck,
                          .folder = command.restart.empty() ? command.out : command.restart,
                          .overwrite = command.overwrite,
-                         .restart = !command.restart.empty()},
+                         .restart = !command.restart.empty(),
+                         .jobs = command.jobs},
                         *pool);
   } catch (const core::InputError&) {
     throw;  // on every rank alike
@@ -85,7 +86,8 @@ int obey(const Command& command) {
     case Verb::check:
       return check(command);
     case Verb::mesh:
-      drivers::make_mesh(command.deck, command.out, command.overwrite, *start_pool());
+      drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs,
+                         *start_pool());
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);

@@ -4,10 +4,35 @@
 
 namespace polyslip::mesh::worker {
 
+namespace {
+
+/// Another mesher without our optimiser.
+class PlainMesher : public Mesher {
+ public:
+  explicit PlainMesher(std::unique_ptr<Mesher> mesher) : mesher_(std::move(mesher)) {}
+  VolumeMesh fill(const SurfaceMesh& surface, double element_size) override {
+    return mesher_->fill(surface, element_size);
+  }
+  bool is_optimised() const override { return false; }
+
+ private:
+  std::unique_ptr<Mesher> mesher_;
+};
+
+std::unique_ptr<Mesher> plain(std::unique_ptr<Mesher> mesher) {
+  return std::make_unique<PlainMesher>(std::move(mesher));
+}
+
+}  // namespace
+
 std::unique_ptr<Mesher> make_mesher(const std::string& name) {
   if (name == "gmsh-hxt") return make_gmsh_mesher(GmshAlgorithm::hxt);
   if (name == "gmsh-delaunay") return make_gmsh_mesher(GmshAlgorithm::delaunay);
-  if (name == "netgen") return make_netgen_mesher();
+  if (name == "netgen") return make_netgen_mesher(NetgenOptimiser::own, size_share);
+  if (name == "gmsh-hxt-plain") return plain(make_gmsh_mesher(GmshAlgorithm::hxt));
+  if (name == "gmsh-delaunay-plain") return plain(make_gmsh_mesher(GmshAlgorithm::delaunay));
+  if (name == "paper-1") return plain(make_netgen_mesher(NetgenOptimiser::none, 1));
+  if (name == "paper-2") return plain(make_netgen_mesher(NetgenOptimiser::own, 1));
   return nullptr;
 }
 

@@ -18,6 +18,8 @@ class Mesher {
   /// Tetrahedra inside `surface`, edges of about `element_size`. Not validated. May throw anything;
   /// the process must not mesh again then.
   virtual VolumeMesh fill(const SurfaceMesh& surface, double element_size) = 0;
+  /// Whether our optimiser of a grain's inside follows.
+  virtual bool is_optimised() const { return true; }
 };
 
 /// Before the server forks: libraries initialised, nothing meshed.
@@ -26,8 +28,10 @@ void initialise_netgen();
 
 enum class GmshAlgorithm { delaunay = 1, hxt = 10 };  // values of Mesh.Algorithm3D
 std::unique_ptr<Mesher> make_gmsh_mesher(GmshAlgorithm algorithm);
-/// Netgen with its optimiser, then Gmsh's optimiser.
-std::unique_ptr<Mesher> make_netgen_mesher();
+/// Netgen, with its optimiser unless it is `none`, then Gmsh's optimiser. Sizes asked for are
+/// `share` of c_l.
+enum class NetgenOptimiser { none, own };
+std::unique_ptr<Mesher> make_netgen_mesher(NetgenOptimiser optimiser, double share);
 
 /// One of `known_meshers`; nullptr for another name.
 std::unique_ptr<Mesher> make_mesher(const std::string& name);

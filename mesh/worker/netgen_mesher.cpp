@@ -19,6 +19,8 @@ constexpr int optimisation_steps = 3;
 
 class NetgenMesher : public Mesher {
  public:
+  NetgenMesher(NetgenOptimiser optimiser, double share) : optimiser_(optimiser), share_(share) {}
+
   VolumeMesh fill(const SurfaceMesh& surface, double element_size) override {
     nglib::Ng_Mesh* grain = nglib::Ng_NewMesh();
     for (const auto& node : surface.nodes) {
@@ -30,9 +32,9 @@ class NetgenMesher : public Mesher {
       nglib::Ng_AddSurfaceElement(grain, nglib::NG_TRIG, corners.data());
     }
     nglib::Ng_Meshing_Parameters parameters;
-    parameters.maxh = size_share * element_size;
-    parameters.optvolmeshenable = 1;
-    parameters.optsteps_3d = optimisation_steps;
+    parameters.maxh = share_ * element_size;
+    parameters.optvolmeshenable = optimiser_ == NetgenOptimiser::own;
+    parameters.optsteps_3d = optimiser_ == NetgenOptimiser::own ? optimisation_steps : 0;
     nglib::Ng_GenerateVolumeMesh(grain, &parameters);  // its return code is always "fine"
     VolumeMesh mesh = read_volume(grain);
     nglib::Ng_DeleteMesh(grain);
@@ -57,6 +59,9 @@ class NetgenMesher : public Mesher {
     }
     return mesh;
   }
+
+  NetgenOptimiser optimiser_;
+  double share_;
 };
 
 }  // namespace
@@ -66,6 +71,8 @@ void initialise_netgen() {
   netgen::printmessage_importance = 0;
 }
 
-std::unique_ptr<Mesher> make_netgen_mesher() { return std::make_unique<NetgenMesher>(); }
+std::unique_ptr<Mesher> make_netgen_mesher(NetgenOptimiser optimiser, double share) {
+  return std::make_unique<NetgenMesher>(optimiser, share);
+}
 
 }  // namespace polyslip::mesh::worker

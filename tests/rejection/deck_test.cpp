@@ -50,8 +50,14 @@ const WrongDeck wrong_decks[] = {
     {"TwoLengths", "[polycrystal]\ndomain = [1.0, 1.0]\n",
      "deck.toml:2:10: [polycrystal] domain = [1.0, 1.0] must be a list of three numbers"},
     {"UnknownMesher", "[mesh]\nmeshers = [\"gmsh\"]\n",
-     "deck.toml:2:12: [mesh] meshers: entry 1 = \"gmsh\" must be \"gmsh-hxt\", \"gmsh-delaunay\" "
-     "or \"netgen\""},
+     "deck.toml:2:12: [mesh] meshers: entry 1 = \"gmsh\" must be \"gmsh-hxt\", \"gmsh-delaunay\", "
+     "\"netgen\", \"gmsh-hxt-plain\", \"gmsh-delaunay-plain\", \"paper-1\" or \"paper-2\""},
+    {"OuterSizeOfNothing", "[mesh]\nelement_size_outer = 0\n",
+     "deck.toml:2:22: [mesh] element_size_outer = 0 must be >= 0.01 and <= 10"},
+    {"GrainSizeOfNothing", "[mesh]\ngrain_element_sizes = [0.5, -1]\n",
+     "deck.toml:2:29: [mesh] grain_element_sizes: entry 2 = -1 must be >= 0.01 and <= 10"},
+    {"GrainSizesOfOthers", "[polycrystal]\ngrains = 5\n[mesh]\ngrain_element_sizes = [0.5, 1]\n",
+     "deck.toml:4:23: [mesh] 2 numbers for 5 grains; give one a grain"},
     {"NoMesher", "[mesh]\nmeshers = []\n",
      "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
     {"RightAngleOfAFace", "[regularisation]\nmax_flatness_fault = 90\n",

@@ -128,6 +128,9 @@ flattening_sweeps = 2
 [mesh]
 length_unit = "file"
 element_size = 0.3
+element_size_outer = 0.6
+grain_element_sizes = [0.2, 0.3]
+slide_boundary = false
 progression_factor = 1.5
 meshers = ["netgen"]
 mesher_timeout = 30
@@ -178,6 +181,9 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.regularisation.position_search, 1.1);
   EXPECT_EQ(o.regularisation.flattening_sweeps, 2);
   EXPECT_EQ(o.mesh.element_size, 0.3);
+  EXPECT_EQ(o.mesh.outer_element_size, 0.6);
+  EXPECT_EQ(o.mesh.grain_element_sizes, (std::vector<double>{0.2, 0.3}));
+  EXPECT_FALSE(o.mesh.slide_boundary);
   EXPECT_EQ(o.mesh.progression_factor, 1.5);
   EXPECT_EQ(o.mesh.meshers, std::vector<std::string>{"netgen"});
   EXPECT_EQ(o.mesh.mesher_timeout, 30);
@@ -259,9 +265,11 @@ TEST(Options, OneWrongValueOneLine) {
             "deck.toml:9:16: [mesh] element_size = -0.5 must be >= 0.01 and <= 10");
   EXPECT_EQ(error_of(changed("grains = 30", "grains = 30.5")),
             "deck.toml:2:10: [polycrystal] grains = 30.5 must be an integer");
-  EXPECT_EQ(error_of(changed("\"gmsh-hxt\"", "\"gmsh-htx\"")),
-            "deck.toml:12:12: [mesh] meshers: entry 1 = \"gmsh-htx\" must be \"gmsh-hxt\", "
-            "\"gmsh-delaunay\" or \"netgen\"; did you mean \"gmsh-hxt\"?");
+  EXPECT_EQ(
+      error_of(changed("\"gmsh-hxt\"", "\"gmsh-htx\"")),
+      "deck.toml:12:12: [mesh] meshers: entry 1 = \"gmsh-htx\" must be \"gmsh-hxt\", "
+      "\"gmsh-delaunay\", \"netgen\", \"gmsh-hxt-plain\", \"gmsh-delaunay-plain\", \"paper-1\" "
+      "or \"paper-2\"; did you mean \"gmsh-hxt\"?");
   EXPECT_EQ(error_of(changed("type = \"plane-strain-compression\"", "type = \"tension\"")),
             "deck.toml:25:8: [loading] type = \"tension\" must be \"plane-strain-compression\"");
   EXPECT_EQ(error_of(changed("seed = 1", "seed = -1")),

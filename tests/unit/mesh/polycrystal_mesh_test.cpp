@@ -65,6 +65,27 @@ TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
   }
 }
 
+TEST(PolycrystalMesh, HasFineInnerAndCoarseOuterGrainsIfAsked) {
+  const auto pool = start_pool();
+  const auto tessellation = polycrystal(60, 3);
+  MeshingOptions options;
+  options.element_size = 0.25;
+  options.outer_element_size = 0.5;
+  MeshingReport report;
+  const Mesh mesh = mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), *pool, report);
+  ASSERT_NO_THROW(check(mesh));
+  std::vector<char> outer(60, false);
+  for (const auto& f : mesh.topology.faces)
+    if (f.domain_face >= 0) outer[f.cells[0]] = true;
+  const auto volumes = grain_volumes(mesh);
+  std::array<double, 2> elements{}, volume{};
+  for (int c : mesh.tetrahedron_cell) ++elements[outer[c]];
+  for (int c = 0; c < 60; ++c) volume[outer[c]] += volumes[c];
+  // 670 elements a unit volume at 0.25 and 108 at 0.5; outer grains border on inner ones.
+  EXPECT_NEAR(elements[0] / volume[0], 670, 170);
+  EXPECT_LT(elements[1] / volume[1], 300);
+}
+
 TEST(PolycrystalMesh, IsTheSameForAnyNumberOfWorkers) {
   const auto pool = start_pool();
   const auto geometry = geometry_of(polycrystal(12, 4));

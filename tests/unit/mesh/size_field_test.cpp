@@ -80,11 +80,40 @@ TEST(VertexSizes, AreThoseOfTheShortestEdgeTimesTheFactor) {
   Topology t;
   t.vertex_count = 4;
   t.edges = {{{0, 1}}, {{1, 2}}, {{2, 3}}};
-  const auto sizes = vertex_sizes(t, {0.1, 0.24, 0.9}, 0.25, 2);
+  const auto sizes = vertex_sizes(t, {0.1, 0.24, 0.9}, {0.25, 0.25, 0.25}, 2);
   EXPECT_DOUBLE_EQ(sizes[0], 0.2);
   EXPECT_DOUBLE_EQ(sizes[1], 0.2);
   EXPECT_DOUBLE_EQ(sizes[2], 0.25);
   EXPECT_DOUBLE_EQ(sizes[3], 0.25);
+}
+
+TEST(ElementSizes, AreTheLeastOfTheGrainsAround) {
+  const auto tessellation = voronoi_tessellation(PolycrystalOptions{.grains = 60, .seed = 2});
+  const auto& t = tessellation.topology;
+  MeshingOptions options;
+  options.element_size = 0.2;
+  options.outer_element_size = 0.5;
+  const auto sizes = element_sizes(t, options);
+  std::vector<char> outer(t.cell_count(), false);
+  for (const auto& f : t.faces)
+    if (f.domain_face >= 0) outer[f.cells[0]] = true;
+  int inner = 0;
+  for (int c = 0; c < t.cell_count(); ++c) {
+    EXPECT_EQ(sizes.grains[c], outer[c] ? 0.5 : 0.2);
+    inner += !outer[c];
+  }
+  EXPECT_GT(inner, 0);
+  for (std::size_t f = 0; f < t.faces.size(); ++f) {
+    double least = 1;
+    for (int c : t.faces[f].cells)
+      if (c >= 0) least = std::min(least, sizes.grains[c]);
+    EXPECT_EQ(sizes.faces[f], least);
+    for (int e : t.faces[f].edges) EXPECT_LE(sizes.edges[e], least);
+  }
+  options.grain_element_sizes.assign(60, 0.3);
+  EXPECT_EQ(element_sizes(t, options).grains, options.grain_element_sizes);
+  options.grain_element_sizes.pop_back();
+  EXPECT_THROW(element_sizes(t, options), core::InputError);
 }
 
 TEST(CurvedEdge, MeasuresAParabola) {

@@ -1,0 +1,35 @@
+#include "mesh/candidate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace polyslip::mesh {
+namespace {
+
+constexpr double highest_floor = 0.2;
+/// Share of the worst triangle's radius ratio (2 r/R) that elements on it reach.
+constexpr double triangle_share = 0.7;
+constexpr double alpha = 0.2;  // eq. (5)
+
+}  // namespace
+
+SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size) {
+  if (surface.triangles.empty()) return {};
+  double least = 1, sizes = 0;
+  for (const auto& t : surface.triangles) {
+    const core::Vec3 &a = surface.nodes[t[0]], &b = surface.nodes[t[1]], &c = surface.nodes[t[2]];
+    const double u = (b - a).norm(), v = (c - b).norm(), w = (a - c).norm();
+    const double area = (b - a).cross(c - a).norm() / 2;
+    least = std::min(least, 16 * area * area / (u * v * w * (u + v + w)));
+    const double length = (u + v + w) / 3;
+    sizes += std::min(length / element_size, element_size / length);
+  }
+  const double mean = sizes / static_cast<double>(surface.triangles.size());
+  return {std::min(highest_floor, triangle_share * least), std::pow(mean, 3 * alpha)};
+}
+
+bool is_good(const SurfaceBounds& bounds, double worst, double O, double target) {
+  return worst >= bounds.floor && O >= target * bounds.O;
+}
+
+}  // namespace polyslip::mesh
