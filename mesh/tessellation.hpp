@@ -51,6 +51,7 @@ struct Tessellation {
   Domain domain = box_domain({1, 1, 1});
   core::Vec3 size{1, 1, 1};          ///< of the domain's bounding box; mean cell volume is 1
   std::vector<core::Vec3> seeds;     ///< one a cell
+  std::vector<double> weights;       ///< of a Laguerre tessellation, one a cell; else empty
   std::vector<core::Vec3> vertices;  ///< [topology.vertex_count]
   std::vector<Plane> face_planes;    ///< the face's plane in the Voronoi tessellation (eq. 2)
   /// Master point of a face's interpolation triangles (section 2.1.2.2): -1 the barycentre of the
@@ -94,6 +95,11 @@ Tessellation voronoi_tessellation(const PolycrystalOptions& options);
 Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const Domain& domain);
 /// In the box [0, size].
 Tessellation voronoi_tessellation(const std::vector<core::Vec3>& seeds, const core::Vec3& size);
+
+/// Laguerre tessellation: cell i is where |x - seed_i|^2 - weight_i is least. Seeds lie inside the
+/// domain, though not always in their own cells. InputError, naming the seed, if a cell is empty.
+Tessellation laguerre_tessellation(const std::vector<core::Vec3>& seeds,
+                                   const std::vector<double>& weights, const Domain& domain);
 
 /// Removes short edges (section 2.1.2 of the paper). Every cell remains a polyhedron that is seen
 /// as a whole from its centroid, the box keeps its corners, edges and faces, and face_planes stay

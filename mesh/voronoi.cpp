@@ -128,9 +128,10 @@ bool same_loop_reversed(const Loop& p, Loop q) {
 class Assembly {
  public:
   Assembly(const std::vector<SeparateCell>& cells, const std::vector<Vec3>& seeds,
-           const Domain& domain)
+           const std::vector<double>& weights, const Domain& domain)
       : cells_(cells), all_(collect(cells)) {
     result_.seeds = seeds;
+    result_.weights = weights;
     result_.domain = domain;
     result_.size = domain.size;
   }
@@ -248,6 +249,8 @@ class Assembly {
     const Vec3 &p = result_.seeds[cell], &q = result_.seeds[neighbour];
     plane.normal = (q - p).normalized();
     plane.offset = plane.normal.dot(0.5 * (p + q));
+    if (!result_.weights.empty())
+      plane.offset += (result_.weights[cell] - result_.weights[neighbour]) / (2 * (q - p).norm());
     return plane;
   }
 
@@ -259,10 +262,19 @@ class Assembly {
   std::unordered_map<std::uint64_t, int> edge_ids_;
 };
 
-std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds, const Domain& domain) {
-  const auto cells = separate_voronoi_cells(seeds, domain);
+// No weights: a Voronoi tessellation.
+std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds,
+                                     const std::vector<double>& weights, const Domain& domain) {
+  const auto cells = weights.empty() ? separate_voronoi_cells(seeds, domain)
+                                     : separate_power_cells(seeds, weights, domain);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].faces.size() < 4)
+      throw core::InputError(
+          fmt::format("seed {} at ({}, {}, {}) of weight {} has no Laguerre cell: the cells of "
+                      "heavier seeds cover it",
+                      i + 1, seeds[i].x(), seeds[i].y(), seeds[i].z(), weights[i]));
   const double cell_size = std::cbrt(domain.volume / static_cast<double>(seeds.size()));
-  Assembly assembly(cells, seeds, domain);
+  Assembly assembly(cells, seeds, weights, domain);
   for (double tolerance : {1e-10, 1e-9, 1e-8, 1e-7})
     if (auto result = assembly.build(tolerance * cell_size)) return result;
   return std::nullopt;
@@ -301,7 +313,7 @@ std::vector<Vec3> random_points(const Domain& domain, int count, std::uint64_t s
 Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Domain& domain) {
   if (seeds.empty()) throw core::InputError("a tessellation needs at least one seed");
   check_inside(seeds, domain);
-  if (auto result = assemble(seeds, domain)) return std::move(*result);
+  if (auto result = assemble(seeds, {}, domain)) return std::move(*result);
   // Seeds that miss a grid by about the rounding of the cells (1e-11): put them on one.
   auto rounded = seeds;
   const double step = 0x1.0p-27;
@@ -309,7 +321,18 @@ Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Domain& 
     for (double& xi : x) xi = std::round(xi / step) * step;
     x = x.cwiseMin(domain.size);
   }
-  if (auto result = assemble(rounded, domain)) return std::move(*result);
+  if (auto result = assemble(rounded, {}, domain)) return std::move(*result);
+  throw core::InternalError("tessellation: neighbouring cells disagree on the face between them");
+}
+
+Tessellation laguerre_tessellation(const std::vector<Vec3>& seeds,
+                                   const std::vector<double>& weights, const Domain& domain) {
+  if (seeds.empty() || weights.size() != seeds.size())
+    throw core::InputError(fmt::format(
+        "a Laguerre tessellation needs seeds and a weight for each: {} seeds, {} weights",
+        seeds.size(), weights.size()));
+  check_inside(seeds, domain);
+  if (auto result = assemble(seeds, weights, domain)) return std::move(*result);
   throw core::InternalError("tessellation: neighbouring cells disagree on the face between them");
 }
 

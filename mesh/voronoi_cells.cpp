@@ -82,22 +82,24 @@ bool cut_by_planes(voro::voronoicell_neighbor& cell, const Vec3& seed, const Dom
   return true;
 }
 
-}  // namespace
-
-std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
-                                                 const Domain& domain) {
-  const double n = static_cast<double>(seeds.size());
+// The library's box, and how many blocks it is divided into along each axis.
+template <class Container>
+Container make_container(std::size_t seeds, const Domain& domain) {
+  const double n = static_cast<double>(seeds);
   const double per_length = std::cbrt(n / (voro::optimal_particles * domain.volume));
   // A domain that is no box lies well inside the library's box, whose walls its planes cut off.
   const Vec3& size = domain.size;
   const Vec3 margin = domain.is_box() ? Vec3(Vec3::Zero()) : Vec3(0.1 * size);
   const Vec3 low = -margin, high = size + margin;
-  voro::container box(low.x(), high.x(), low.y(), high.y(), low.z(), high.z(),
-                      block_count(size.x(), per_length), block_count(size.y(), per_length),
-                      block_count(size.z(), per_length), false, false, false, 8);
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z());
+  return Container(low.x(), high.x(), low.y(), high.y(), low.z(), high.z(),
+                   block_count(size.x(), per_length), block_count(size.y(), per_length),
+                   block_count(size.z(), per_length), false, false, false, 8);
+}
 
+// Without faces: cells that are empty.
+template <class Container>
+std::vector<SeparateCell> compute_cells(Container& box, const std::vector<Vec3>& seeds,
+                                        const Domain& domain) {
   std::vector<SeparateCell> cells(seeds.size());
   voro::c_loop_all loop(box);
   voro::voronoicell_neighbor cell;
@@ -109,12 +111,34 @@ std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
       orient_outwards(cells[id], seeds[id]);
       if (!domain.is_box()) name_planes(cells[id]);
     } while (loop.inc());
+  return cells;
+}
+
+}  // namespace
+
+std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
+                                                 const Domain& domain) {
+  auto box = make_container<voro::container>(seeds.size(), domain);
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z());
+  auto cells = compute_cells(box, seeds, domain);
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (cells[i].faces.size() < 4)
       throw core::InputError(
           fmt::format("seed {} at ({}, {}, {}) has no Voronoi cell: seeds must differ", i + 1,
                       seeds[i].x(), seeds[i].y(), seeds[i].z()));
   return cells;
+}
+
+std::vector<SeparateCell> separate_power_cells(const std::vector<Vec3>& seeds,
+                                               const std::vector<double>& weights,
+                                               const Domain& domain) {
+  auto box = make_container<voro::container_poly>(seeds.size(), domain);
+  const double least = weights.empty() ? 0 : *std::min_element(weights.begin(), weights.end());
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z(),
+            std::sqrt(weights[i] - least));
+  return compute_cells(box, seeds, domain);
 }
 
 }  // namespace polyslip::mesh

@@ -1,5 +1,6 @@
 #pragma once
-// Voronoi cells, each on its own: what the geometry library gives before cells share anything.
+// Voronoi and Laguerre cells, each on its own: what the geometry library gives before cells share
+// anything.
 
 #include <vector>
 
@@ -26,5 +27,11 @@ struct SeparateCell {
 /// cell (two seeds coincide).
 std::vector<SeparateCell> separate_voronoi_cells(const std::vector<core::Vec3>& seeds,
                                                  const Domain& domain);
+
+/// The same for a Laguerre tessellation: cell i is where |x - seed_i|^2 - weight_i is least. A cell
+/// that is empty has no faces. Seeds lie in the domain.
+std::vector<SeparateCell> separate_power_cells(const std::vector<core::Vec3>& seeds,
+                                               const std::vector<double>& weights,
+                                               const Domain& domain);
 
 }  // namespace polyslip::mesh
