@@ -34,8 +34,8 @@ struct TomlEntry {
   TomlValue value;
 };
 
-/// [name] and its entries, in the order of the text. One of a list, [[name.list]], is a table of its
-/// own, "name.list 1" and so on.
+/// [name] and its entries, in the order of the text. One of a list, [[name.list]], is a table of
+/// its own, "name.list 1" and so on.
 struct TomlTable {
   std::string name;
   Position at;  ///< of the name
