@@ -30,6 +30,7 @@ text{font:12px system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif;fil
 .axis{stroke:#57606a;stroke-width:1;fill:none}
 .s{fill:none;stroke-width:1.8;stroke-linejoin:round}
 .d{stroke-dasharray:6 4}
+.s.h{stroke-width:.6;stroke:#57606a}
 .f{stroke:none;fill-opacity:.16}
 .b{stroke-width:1;fill-opacity:.45}
 .c0{stroke:#0072b2}.f.c0,.b.c0,.p.c0{fill:#0072b2}
@@ -41,7 +42,7 @@ text{font:12px system-ui,-apple-system,'Segoe UI',Helvetica,Arial,sans-serif;fil
 .c6{stroke:#57606a}.f.c6,.b.c6,.p.c6{fill:#57606a}
 @media(prefers-color-scheme:dark){
 text{fill:#e6edf3}.small{fill:#9ea7b3}.ground{fill:#0d1117}.grid{stroke:#262c36}
-.axis{stroke:#9ea7b3}
+.axis,.s.h{stroke:#9ea7b3}
 .c0{stroke:#4ca6e8}.f.c0,.b.c0,.p.c0{fill:#4ca6e8}
 .c1{stroke:#f08a3c}.f.c1,.b.c1,.p.c1{fill:#f08a3c}
 .c2{stroke:#2fbf95}.f.c2,.b.c2,.p.c2{fill:#2fbf95}
@@ -199,6 +200,10 @@ class Panel {
     }
   }
 
+  static const char* style_of(Mark mark) {
+    return mark == Mark::dashed ? " d" : mark == Mark::fine ? " h" : "";
+  }
+
   void swatch(Mark mark, int c, double x, double y) {
     if (mark == Mark::points)
       add("<circle class=\"p c{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\"/>\n", c, x + 9, y);
@@ -209,8 +214,7 @@ class Panel {
       add("<path class=\"s c{}\" d=\"M{:.1f} {:.1f}v-11m-3.5 4l3.5 -4l3.5 4\"/>\n", c, x + 9,
           y + 6);
     else
-      add("<path class=\"s c{}{}\" d=\"M{:.1f} {:.1f}h18\"/>\n", c,
-          mark == Mark::dashed ? " d" : "", x, y);
+      add("<path class=\"s c{}{}\" d=\"M{:.1f} {:.1f}h18\"/>\n", c, style_of(mark), x, y);
   }
 
   void axes() {
@@ -250,6 +254,7 @@ class Panel {
     switch (s.mark) {
       case Mark::line:
       case Mark::dashed:
+      case Mark::fine:
         return curve(s, c);
       case Mark::steps:
         return steps(s, c);
@@ -288,7 +293,7 @@ class Panel {
                      py_clamped(s.y[i]));
       down = true;
     }
-    add("<path class=\"s c{}{}\" d=\"{}\"/>\n", c, s.mark == Mark::dashed ? " d" : "", path);
+    add("<path class=\"s c{}{}\" d=\"{}\"/>\n", c, style_of(s.mark), path);
   }
 
   void steps(const Series& s, int c) {

@@ -22,6 +22,7 @@ enum class Mark {
   steps,   ///< histogram: x holds the edges, one more than y
   bars,    ///< one over each x
   points,
+  fine,  ///< a thin grey line: wire frames
   arrow  ///< a vertical one at each x: a distribution of one value; y is not read
 };
 

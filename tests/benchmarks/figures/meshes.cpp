@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "figures.hpp"
 #include "mesh/geometry.hpp"
@@ -155,28 +157,67 @@ std::vector<Strategy> regularisation_strategies() {
           {.label = "regularised, p_l = 1.5"}};
 }
 
-Figure figure_8(const Options& wanted) {
-  const Options o = with_defaults(wanted, 1, 500);
-  const auto all = gather(o, regularisation_strategies());
-  Plot a{.title = "elements per grain"};
-  a.x = {.label = "1: Voronoi, p_l = 1000; 2: Voronoi, p_l = 1.5; 3: regularised, p_l = 1.5",
-         .from = 0,
-         .to = 4};
-  a.y = {.label = "elements per inner grain", .from = 0};
-  Plot b{.title = "worst element of each grain"};
-  b.x = {.label = "least radius ratio of a grain", .from = 0, .to = 1};
-  b.y = {.label = "probability density", .from = 0};
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    a.series.push_back(
-        {all[i].label,
-         Mark::bars,
-         {static_cast<double>(i + 1)},
-         {static_cast<double>(all[i].elements) / static_cast<double>(all[i].grains)}});
-    b.series.push_back(curve(all[i].worst, 1, 25, all[i].label));
+/// A wire frame of the mesh on the domain face z1, and the edges of the grains there.
+Plot picture(const mesh::Mesh& mesh, const std::string& title) {
+  constexpr int top = 5;  // z1
+  Plot plot{.title = title};
+  plot.x = {.label = "x (grains of unit mean volume)", .from = 0, .to = mesh.size[0]};
+  plot.y = {.label = "y", .from = 0, .to = mesh.size[1]};
+  const double gap = std::nan("");
+  const auto draw = [&](Series& s, int a, int b) {
+    for (const int n : {a, b}) {
+      s.x.push_back(mesh.nodes[n].x());
+      s.y.push_back(mesh.nodes[n].y());
+    }
+    s.x.push_back(gap);
+    s.y.push_back(gap);
+  };
+  Series wires{"", Mark::fine}, grains{"grain boundaries", Mark::line};
+  std::set<std::pair<int, int>> drawn;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (mesh.topology.faces[mesh.triangle_face[i]].domain_face != top) continue;
+    const auto& t = mesh.triangles[i];
+    for (const auto& [p, q] : mesh::triangle_edges)
+      if (drawn.insert(std::minmax(t[p], t[q])).second) draw(wires, t[p], t[q]);
   }
-  return {"Refinement and quality with and without regularisation",
-          {a, b},
-          counted(o, all) + quality_table(all)};
+  for (const auto& line : mesh.lines)
+    if (drawn.contains(std::minmax(line[0], line[1]))) draw(grains, line[0], line[1]);
+  plot.series = {wires, grains};
+  return plot;
+}
+
+/// A box as wide to its height as a panel, so that the picture is not distorted.
+Figure figure_8(const Options& wanted) {
+  const Options o = with_defaults(wanted, 1, 60);
+  const auto pool = mesh::MesherPool::start(o.worker);
+  mesh::PolycrystalOptions polycrystal;
+  polycrystal.grains = o.grains;
+  polycrystal.seed = o.seed;
+  polycrystal.domain = {1.43, 1, 0.7};
+  const auto raw = mesh::voronoi_tessellation(polycrystal);
+  Figure figure{"The mesh with and without regularisation", {}, {}};
+  Plot bars{.title = "elements per grain"};
+  bars.x = {.label = "panel: 1 (a), 2 (b), 3 (c)", .from = 0, .to = 4};
+  bars.y = {.label = "elements per grain", .from = 0};
+  figure.text = fmt::format("{} grains in a box of 1.43 : 1 : 0.7, all counted; c_l = {:g}.\n\n",
+                            o.grains, o.element_size);
+  figure.text += "| mesh | elements per grain | worst radius ratio |\n|---|---|---|\n";
+  for (const Strategy& strategy : regularisation_strategies()) {
+    mesh::Tessellation tessellation = raw;
+    if (strategy.regularised) mesh::regularise(tessellation, {});
+    mesh::MeshingReport report;
+    const auto mesh =
+        mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing_options(o, strategy),
+                            core::Vec3::Ones(), *pool, report);
+    const double each = static_cast<double>(mesh.element_count()) / o.grains;
+    figure.panels.push_back(picture(mesh, strategy.label));
+    bars.series.push_back(
+        {strategy.label, Mark::bars, {static_cast<double>(figure.panels.size())}, {each}});
+    figure.text += fmt::format("| {} | {:.0f} | {:.4f} |\n", strategy.label, each,
+                               mesh::quality(mesh).min_radius_ratio);
+  }
+  figure.panels.push_back(bars);
+  return figure;
 }
 
 Figure figure_9(const Options& wanted) {

@@ -84,13 +84,15 @@ TEST(Plot, DrawsEveryMark) {
                  {"bars", Mark::bars, {0.2, 0.6}, {1, 2}},
                  {"points", Mark::points, {0.5}, {1}},
                  {"dashed", Mark::dashed, {0, 1}, {0, 1}},
-                 {"arrow", Mark::arrow, {0.7}, {}}};
+                 {"arrow", Mark::arrow, {0.7}, {}},
+                 {"", Mark::fine, {0, 1}, {1, 0}}};
   const std::string svg = svg_text({plot}, "");
   EXPECT_TRUE(well_formed(svg));
   EXPECT_EQ(occurrences(svg, "<rect class=\"b c1\""), 3);  // and one in the legend
   EXPECT_EQ(occurrences(svg, "<circle"), 2);
   EXPECT_EQ(occurrences(svg, "class=\"s c3 d\""), 2);
   EXPECT_EQ(occurrences(svg, "class=\"s c4\""), 2);
+  EXPECT_EQ(occurrences(svg, "class=\"s c5 h\""), 1);
 }
 
 TEST(Plot, RefusesWhatCannotBeDrawn) {
