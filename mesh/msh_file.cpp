@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/error.hpp"
 #include "core/file.hpp"
 #include "mesh/msh_writer.hpp"
 #include "mesh/orientation_block.hpp"
@@ -21,13 +20,18 @@ constexpr int triangle_type(int order) { return order == 2 ? 9 : 2; }
 
 class MshWriter {
  public:
-  MshWriter(const Mesh& mesh, const std::string& path, const MshFormat& format)
-      : mesh_(mesh), format_(format), surfaces_(mesh.domain.surface_of_face()), out_(path) {
+  MshWriter(const Mesh& mesh, const std::string& path, const MshOptions& format,
+            const GrainNotes& notes)
+      : mesh_(mesh),
+        format_(format),
+        notes_(notes),
+        surfaces_(mesh.domain.surface_of_face()),
+        out_(path) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
       if (domain_face(i) >= 0) surface_.push_back(static_cast<int>(i));
   }
 
-  void write(std::span<const core::Quaternion> orientations) {
+  void write() {
     out_.put(
         fmt::format("$MeshFormat\n{} {:d} 8\n", format_.newest ? "4.1" : "2.2", format_.binary));
     if (format_.binary) {
@@ -39,7 +43,7 @@ class MshWriter {
     if (format_.newest) entities();
     nodes();
     format_.newest ? elements_41() : elements_22();
-    if (!orientations.empty()) put_orientations(orientations);
+    if (!notes_.orientations.empty()) put_orientations();
     out_.finish();
   }
 
@@ -96,7 +100,7 @@ class MshWriter {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       out_.put(fmt::format("2 {} \"{}\"\n", i + 1, surfaces[i]));
     for (int c = 0; c < mesh_.topology.cell_count(); ++c)
-      out_.put(fmt::format("3 {} \"grain{}\"\n", c + 1, c + 1));
+      out_.put(fmt::format("3 {0} \"grain{0}\"\n", notes_.id(c)));
     out_.put("$EndPhysicalNames\n");
   }
 
@@ -124,7 +128,7 @@ class MshWriter {
       for (int i = 0; i < 3; ++i) faces.back().box.extend(mesh_.nodes[mesh_.triangles[t][i]]);
     }
     for (int e = 0; e < mesh_.element_count(); ++e) {
-      const int grain = mesh_.tetrahedron_cell[e] + 1;
+      const int grain = notes_.id(mesh_.tetrahedron_cell[e]);
       if (grains.empty() || grains.back().tag != grain) grains.push_back({grain, grain, {}});
       for (int i = 0; i < 4; ++i) grains.back().box.extend(mesh_.nodes[mesh_.tetrahedra[e][i]]);
     }
@@ -199,7 +203,7 @@ class MshWriter {
     int id = 0;
     heading_22(tetrahedron_type(mesh_.order), mesh_.tetrahedra.size());
     for (int e = 0; e < mesh_.element_count(); ++e) {
-      const int grain = mesh_.tetrahedron_cell[e] + 1;
+      const int grain = notes_.id(mesh_.tetrahedron_cell[e]);
       row_22(++id, tetrahedron_type(mesh_.order), grain, grain, mesh_.tetrahedra[e]);
     }
     heading_22(triangle_type(mesh_.order), surface_.size());
@@ -237,7 +241,7 @@ class MshWriter {
   }
 
   void elements_41() {
-    const auto grain = [&](std::size_t e) { return mesh_.tetrahedron_cell[e] + 1; };
+    const auto grain = [&](std::size_t e) { return notes_.id(mesh_.tetrahedron_cell[e]); };
     const auto face = [&](std::size_t i) { return mesh_.triangle_face[surface_[i]] + 1; };
     const std::size_t elements = mesh_.tetrahedra.size(), count = elements + surface_.size();
     std::size_t blocks = 0;
@@ -259,10 +263,11 @@ class MshWriter {
     close("$EndElements");
   }
 
-  void put_orientations(std::span<const core::Quaternion> orientations) {
+  void put_orientations() {
+    const auto& orientations = notes_.orientations;
     out_.put(fmt::format("$ElsetOrientations\n{} {}\n", orientations.size(), written_descriptor));
     for (std::size_t i = 0; i < orientations.size(); ++i) {
-      out_.put(i + 1);
+      out_.put(notes_.id(static_cast<int>(i)));
       put_orientation(out_, orientations[i]);
       out_.put('\n');
     }
@@ -270,7 +275,8 @@ class MshWriter {
   }
 
   const Mesh& mesh_;
-  MshFormat format_;
+  MshOptions format_;
+  const GrainNotes& notes_;
   std::vector<int> surfaces_;  ///< [domain faces] physical surface, from 0
   core::FileWriter out_;
   bool inside_row_ = false;
@@ -279,12 +285,10 @@ class MshWriter {
 
 }  // namespace
 
-void write_msh(const Mesh& mesh, const std::string& path, const MshFormat& format,
-               std::span<const core::Quaternion> orientations) {
-  if (!orientations.empty() && orientations.size() != mesh.topology.cell_faces.size())
-    throw core::InternalError(fmt::format("{} orientations of {} grains", orientations.size(),
-                                          mesh.topology.cell_faces.size()));
-  MshWriter(mesh, path, format).write(orientations);
+void write_msh(const Mesh& mesh, const std::string& path, const MshOptions& options,
+               const GrainNotes& notes) {
+  notes.check(mesh.topology.cell_count());
+  MshWriter(mesh, path, options, notes).write();
 }
 
 void write_msh(const Mesh& mesh, const std::string& path) { write_msh(mesh, path, {}); }

@@ -14,10 +14,10 @@
 namespace polyslip::mesh {
 namespace {
 
-constexpr std::array<MshFormat, 4> formats{
+constexpr std::array<MshOptions, 4> formats{
     {{false, false}, {false, true}, {true, false}, {true, true}}};
 
-std::string name(const MshFormat& f) {
+std::string name(const MshOptions& f) {
   return fmt::format("{}{}", f.newest ? "4.1" : "2.2", f.binary ? " binary" : "");
 }
 
@@ -51,10 +51,10 @@ Mesh sample(int order) {
   return mesh;
 }
 
-std::string bytes_of(const Mesh& mesh, const MshFormat& format,
+std::string bytes_of(const Mesh& mesh, const MshOptions& format,
                      std::span<const core::Quaternion> orientations = {}) {
   const TemporaryFile file("formats.msh", "");
-  write_msh(mesh, file.path(), format, orientations);
+  write_msh(mesh, file.path(), format, {.orientations = orientations, .ids = {}});
   return core::read_text(file.path());
 }
 
@@ -69,7 +69,7 @@ TEST(MshFormats, EachComesBackBitForBit) {
   for (const int order : {1, 2}) {
     const Mesh mesh = sample(order);
     ASSERT_NO_THROW(check(mesh));
-    for (const MshFormat& format : formats) {
+    for (const MshOptions& format : formats) {
       SCOPED_TRACE(name(format));
       const std::string bytes = bytes_of(mesh, format, orientations);
       const MeshFile read = read_bytes(bytes);
@@ -117,7 +117,7 @@ TEST(MshFormats, ReadsTheOtherByteOrder) {
 
 TEST(MshFormats, NoTruncatedFileIsAccepted) {
   const Mesh mesh = sample(1);
-  for (const MshFormat& format : formats) {
+  for (const MshOptions& format : formats) {
     SCOPED_TRACE(name(format));
     const std::string bytes = bytes_of(mesh, format);
     for (std::size_t part = 0; part < 10; ++part) {
