@@ -73,17 +73,29 @@ void add_mesh(CLI::App& app, Command& c) {
 }
 
 void add_convert(CLI::App& app, Command& c) {
-  CLI::App* verb =
-      app.add_subcommand("convert", "Write a stored state as a table, a row an element");
-  verb->add_option("folder", c.folder, "Run folder")->required();
-  verb->add_option("--at-strain", c.at_strain, "The stored state nearest to this strain")
-      ->required();
-  verb->add_option("--to", c.to, "CSV file")->required();
+  CLI::App* verb = app.add_subcommand(
+      "convert", "Write a tessellation or mesh in another format, or a stored state as a table");
+  verb->add_option("in", c.folder, "File (.tess, .msh; .gz too), or run folder")->required();
+  verb->add_option("out", c.out, "File to write: .tess, .msh, .vtu, .inp");
+  verb->add_option("--format", c.format,
+                   "Of the file: msh, msh-binary (Gmsh 2.2), msh4, msh4-binary (4.1), vtu, inp "
+                   "(Abaqus), tess; default: by its extension");
+  CLI::Option* strain = verb->add_option(
+      "--at-strain", c.at_strain, "Of a run folder: the stored state nearest to this strain");
+  verb->add_option("--to", c.to, "CSV file for the state, a row an element");
   verb->add_option("--value", c.value, "Averages of elements, or values at their centroids")
       ->check(CLI::IsMember({"average", "centroid"}))
       ->capture_default_str();
-  add_overwrite(*verb, c, "Replace a file that is no such table");
-  verb->callback([&c] { c.verb = Verb::convert; });
+  add_overwrite(*verb, c, "Replace a file that is there");
+  verb->callback([&c, strain] {
+    c.verb = Verb::convert;
+    const bool state = strain->count() > 0 && !c.to.empty();
+    const bool none = strain->count() == 0 && c.to.empty();
+    if (c.out.empty() ? !state || !c.format.empty() : !none)
+      throw CLI::ValidationError("convert",
+                                 "give a file to read and one to write, or a run folder with "
+                                 "--at-strain and --to");
+  });
 }
 
 void add_stats(CLI::App& app, Command& c) {

@@ -103,6 +103,8 @@ class MshReader {
     const double scale = keep ? 1.0 : std::cbrt(ratio);
     mesh.size = scale * size;
     mesh.domain = box_domain(mesh.size);
+    result_.origin = low;
+    result_.scale = scale;
     if (low == Vec3::Zero() && scale == 1.0) return;
     for (Vec3& x : mesh.nodes)
       for (int i = 0; i < 3; ++i) x[i] = x[i] == high[i] ? mesh.size[i] : scale * (x[i] - low[i]);

@@ -6,12 +6,10 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/length_unit.hpp"
 #include "mesh/mesh.hpp"
 
 namespace polyslip::mesh {
-
-/// The unit of the lengths of a mesh that is read: grains of unit mean volume, or the file's own.
-enum class LengthUnit { grain, file };
 
 struct MeshFile {
   Mesh mesh;
@@ -21,6 +19,9 @@ struct MeshFile {
   std::vector<int> file_rows;
   /// One a cell, where the file has them (`$ElsetOrientations`; see mesh/orientation_block.hpp).
   std::optional<std::vector<core::Quaternion>> orientations;
+  /// A point of the file lies at (x - origin) * scale here.
+  core::Vec3 origin{0, 0, 0};
+  double scale = 1;
 };
 
 /// Reads Gmsh's formats 2.2 and 4.1, ASCII and binary, `.gz` too: tetrahedra of order 1 or 2, not

@@ -10,9 +10,11 @@
 #include <iterator>
 #include <map>
 
+#include "core/error.hpp"
 #include "core/file.hpp"
 #include "mesh/face_fan.hpp"
-#include "mesh/tessellation.hpp"
+#include "mesh/orientation_block.hpp"
+#include "mesh/tess_writer.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -21,10 +23,10 @@ using core::Vec3;
 
 class TessWriter {
  public:
-  explicit TessWriter(const Tessellation& tessellation)
-      : tess_(tessellation), domain_(tessellation.domain) {}
+  TessWriter(const Tessellation& tessellation, const std::string& path, const TessNotes& notes)
+      : tess_(tessellation), domain_(tessellation.domain), notes_(notes), out_(path) {}
 
-  std::string text() {
+  void write() {
     add("***tess\n **format\n   3.5\n **general\n   3 standard\n");
     cells();
     vertices();
@@ -33,25 +35,58 @@ class TessWriter {
     polyhedra();
     domain();
     add("***end\n");
-    return std::move(text_);
+    out_.finish();
   }
 
  private:
   template <class... Args>
   void add(fmt::format_string<Args...> format, Args&&... args) {
+    text_.clear();
     fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    out_.put(std::string_view(text_.data(), text_.size()));
   }
 
-  // 17 digits: reading the file gives the same numbers.
-  void point(const Vec3& x) { add(" {:.17g} {:.17g} {:.17g}", x.x(), x.y(), x.z()); }
+  // Reading the file gives the same numbers.
+  void number(double x) {
+    out_.put(' ');
+    out_.put(x);
+  }
+  void point(const Vec3& x) {
+    for (int i = 0; i < 3; ++i) number(x[i]);
+  }
 
   void cells() {
-    add(" **cell\n  {}\n  *seed\n", tess_.seeds.size());
+    add(" **cell\n  {}\n", tess_.seeds.size());
+    if (!counts_from_one(notes_.ids)) numbers("*id", notes_.ids);
+    if (!notes_.crystal.empty()) add("  *crysym\n   {}\n", notes_.crystal);
+    add("  *seed\n");
     for (std::size_t i = 0; i < tess_.seeds.size(); ++i) {
       add("   {}", i + 1);
       point(tess_.seeds[i]);
-      add(" 0\n");
+      number(notes_.seed_weights.empty() ? 0 : notes_.seed_weights[i]);
+      add("\n");
     }
+    if (!notes_.groups.empty()) numbers("*group", notes_.groups);
+    if (notes_.orientations.empty()) return;
+    add("  *ori\n   {}\n", written_descriptor);
+    for (const core::Quaternion& q : notes_.orientations) {
+      add("  ");
+      put_orientation(out_, q);
+      add("\n");
+    }
+  }
+
+  /// As cells do in files without ids.
+  static bool counts_from_one(std::span<const int> ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      if (ids[i] != static_cast<int>(i) + 1) return false;
+    return true;
+  }
+
+  void numbers(const char* key, std::span<const int> list) {
+    add("  {}\n  ", key);
+    for (const int x : list) add(" {}", x);
+    add("\n");
   }
 
   void vertices() {
@@ -81,14 +116,16 @@ class TessWriter {
       for (std::size_t i = 0; i < all[f].edges.size(); ++i)
         add(" {}", (all[f].forward[i] ? 1 : -1) * (all[f].edges[i] + 1));
       const Plane& plane = tess_.face_planes[f];
-      add("\n     {:.17g}", plane.offset);
+      add("\n    ");
+      number(plane.offset);
       point(plane.normal);
       add("\n");
       face_point(f, loop);
     }
   }
 
-  // State 1 and the master point (0 the barycentre, i the i-th vertex) if the face left its plane.
+  // State 1 and the master point (0 the barycentre, i the i-th vertex) if the face left its plane
+  // or has another master point than most.
   void face_point(int f, const std::vector<int>& loop) {
     std::vector<Vec3> points;
     double distance = 0;
@@ -97,8 +134,7 @@ class TessWriter {
       const Plane& plane = tess_.face_planes[f];
       distance = std::max(distance, std::abs(plane.normal.dot(points.back()) - plane.offset));
     }
-    if (distance > 1e-9) {
-      const int master = tess_.face_masters[f];
+    if (const int master = tess_.face_masters[f]; distance > 1e-9 || master >= 0) {
       add("     1 {}", master + 1);
       point(fan_master(points, master));
       add("\n");
@@ -149,8 +185,14 @@ class TessWriter {
     return text;
   }
 
+  /// Neper's names; a general convex body is one of planes.
+  std::string domain_type() const {
+    if (domain_.is_box()) return "cube";
+    return domain_.shape == "cylinder" || domain_.shape == "sphere" ? domain_.shape : "planes";
+  }
+
   void domain() {
-    add(" **domain\n  *general\n   {}\n", domain_.is_box() ? "cube" : domain_.shape);
+    add(" **domain\n  *general\n   {}\n", domain_type());
     domain_vertices();
     domain_edges();
     domain_faces();
@@ -199,7 +241,8 @@ class TessWriter {
         add(" {}", edges.at({std::min(from, to), std::max(from, to)}));
       }
       const Plane& plane = domain_.faces[d].plane;
-      add("\n     plane\n     4 {:.17g}", -plane.offset + 0.0);
+      add("\n     plane\n     4");
+      number(-plane.offset + 0.0);
       point(-plane.normal + Vec3::Zero());
       add("\n     {}\n", domain_.faces[d].name);
       list("     ", faces_on(d));
@@ -208,13 +251,24 @@ class TessWriter {
 
   const Tessellation& tess_;
   const Domain& domain_;
-  std::string text_;
+  const TessNotes& notes_;
+  core::FileWriter out_;
+  fmt::memory_buffer text_;
 };
 
 }  // namespace
 
+void write_tess(const Tessellation& tessellation, const std::string& path, const TessNotes& notes) {
+  const auto cells = static_cast<std::size_t>(tessellation.topology.cell_count());
+  for (const std::size_t size : {notes.orientations.size(), notes.ids.size(),
+                                 notes.seed_weights.size(), notes.groups.size()})
+    if (size != 0 && size != cells)
+      throw core::InternalError(fmt::format("notes on {} of {} cells", size, cells));
+  TessWriter(tessellation, path, notes).write();
+}
+
 void write_tess(const Tessellation& tessellation, const std::string& path) {
-  core::write_file(path, TessWriter(tessellation).text());
+  write_tess(tessellation, path, {});
 }
 
 }  // namespace polyslip::mesh

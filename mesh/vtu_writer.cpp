@@ -220,7 +220,7 @@ void write_vtu(const Tessellation& tessellation, const std::string& path, const 
                           [&](std::size_t c) { return notes.id(static_cast<int>(c)); });
   add_cells<double>(file, "CellData", "volume", "Float64", cells,
                     [&](std::size_t c) { return cell_volume(tessellation, static_cast<int>(c)); });
-  add_cells<std::int32_t>(file, "CellData", "faces", "Int32", cells, [&](std::size_t c) {
+  add_cells<std::int32_t>(file, "CellData", "face_count", "Int32", cells, [&](std::size_t c) {
     return static_cast<std::int32_t>(tessellation.topology.cell_faces[c].size());
   });
   add_orientations(file, notes, cells, [](std::size_t c) { return c; });

@@ -16,7 +16,7 @@ namespace polyslip::mesh {
 void write_vtu(const Mesh& mesh, const std::string& path, const GrainNotes& notes = {});
 
 /// Cells as polyhedra (VTK_POLYHEDRON): a face in a plane is one polygon, another its interpolation
-/// triangles. Cell data `grain`, `volume`, `faces` and, with orientations, `orientation`.
+/// triangles. Cell data `grain`, `volume`, `face_count` and, with orientations, `orientation`.
 void write_vtu(const Tessellation& tessellation, const std::string& path,
                const GrainNotes& notes = {});
 

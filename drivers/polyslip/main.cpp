@@ -11,6 +11,7 @@
 #include "core/deck.hpp"
 #include "core/error.hpp"
 #include "drivers/command_line.hpp"
+#include "drivers/convert_file.hpp"
 #include "drivers/mesh_verb.hpp"
 #include "drivers/options.hpp"
 #include "drivers/run.hpp"
@@ -69,6 +70,12 @@ int check(const Command& command) {
 }
 
 int convert(const Command& command) {
+  if (!command.out.empty()) {
+    std::cout << drivers::convert_file(command.folder, command.out, command.format,
+                                       command.overwrite)
+              << '\n';
+    return drivers::exit_fine;
+  }
   const auto state = results::convert(command.folder, command.at_strain, command.to,
                                       command.value == "centroid" ? results::ElementValue::centroid
                                                                   : results::ElementValue::average,

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/random.hpp"
 #include "core/rotation.hpp"
+#include "mesh/tess_writer.hpp"
 #include "unit/mesh/reader_support.hpp"
 
 namespace polyslip::mesh {
@@ -10,7 +12,9 @@ namespace {
 
 const std::string neper_file = POLYSLIP_SOURCE_DIR "/tests/data/n20-id1-raw.tess";
 
-std::string fault(const std::string& text) { return fault_of("fault.tess", text, read_tess); }
+std::string fault(const std::string& text) {
+  return fault_of("fault.tess", text, [](const std::string& path) { read_tess(path); });
+}
 
 Tessellation grown(double l_max) {
   auto t = voronoi_tessellation({.grains = 25, .seed = 3, .domain = {1, 2, 0.7}});
@@ -36,6 +40,7 @@ void expect_same(const Tessellation& a, const Tessellation& b) {
     EXPECT_EQ(a.face_planes[f].normal, b.face_planes[f].normal);
     EXPECT_EQ(a.face_planes[f].offset, b.face_planes[f].offset);
   }
+  EXPECT_EQ(a.face_masters, b.face_masters);
 }
 
 TEST(TessReader, OurOwnFilesComeBackBitForBit) {
@@ -52,6 +57,109 @@ TEST(TessReader, OurOwnFilesComeBackBitForBit) {
     const std::string text = core::read_text(file.path());
     write_tess(read.tessellation, file.path());
     EXPECT_EQ(core::read_text(file.path()), text);
+  }
+}
+
+TEST(TessReader, RegularisingAgainWhatWasReadChangesNothing) {
+  for (const double l_max : {0.13, 0.3}) {
+    const Tessellation t = grown(l_max);
+    const TemporaryFile file("again.tess", "");
+    write_tess(t, file.path());
+    Tessellation again = read_tess(file.path()).tessellation;
+    const RegularisationReport report = regularise(again, {.max_edge_length = l_max});
+    EXPECT_EQ(report.deleted, 0);
+    expect_same(again, t);
+  }
+}
+
+TEST(TessReader, NotesOnCellsComeBack) {
+  const Tessellation t = grown(0.13);
+  core::Random random(2, core::Stream::tests);
+  std::vector<core::Quaternion> orientations;
+  std::vector<int> ids, groups;
+  std::vector<double> weights;
+  for (int c = 0; c < 25; ++c) {
+    orientations.push_back(random.rotation());
+    ids.push_back(100 - 3 * c);
+    groups.push_back(1 + c % 2);
+    weights.push_back(random.uniform());
+  }
+  const TemporaryFile file("notes.tess", "");
+  write_tess(t, file.path(),
+             {.orientations = orientations,
+              .ids = ids,
+              .seed_weights = weights,
+              .groups = groups,
+              .crystal = "cubic"});
+  const TessellationFile read = read_tess(file.path());
+  expect_same(read.tessellation, t);
+  EXPECT_EQ(read.cell_ids, ids);
+  EXPECT_EQ(read.seed_weights, weights);
+  EXPECT_EQ(read.crystal, "cubic");
+  ASSERT_TRUE(read.groups && read.orientations);
+  EXPECT_EQ(*read.groups, groups);
+  for (std::size_t c = 0; c < 25; ++c)
+    EXPECT_LT(core::rotation_angle(read.orientations->at(c).conjugate() * orientations[c]), 1e-15);
+  const std::string text = core::read_text(file.path());
+  EXPECT_EQ(fault(replaced(text, " 100 97 ", " 97 97 ")), "9: two cells have the id 97");
+  EXPECT_EQ(fault(replaced(text, " 100 97 ", " 0 97 ")), "9: the id of a cell is 0, not positive");
+}
+
+/// A prism of `sides` sides about z, all of them one surface, and its ends.
+Domain prism(int sides, double turn) {
+  std::vector<Plane> planes{{{0, 0, -1}, 0}, {{0, 0, 1}, 1.5}};
+  std::vector<std::string> names{"z0", "z1"};
+  for (int i = 0; i < sides; ++i) {
+    const double angle = turn + 2 * 3.14159265358979 * i / sides;
+    planes.push_back({{std::cos(angle), std::sin(angle), 0}, 1});
+    names.push_back("side");
+  }
+  return convex_domain("cylinder", planes, names, 20);
+}
+
+TEST(TessReader, ConvexDomainsComeBack) {
+  for (const int sides : {3, 24}) {
+    const Domain domain = prism(sides, 0.1);
+    core::Random random(9, core::Stream::tests);
+    std::vector<core::Vec3> seeds;
+    while (seeds.size() < 20) {
+      const core::Vec3 x = core::Vec3(random.uniform(), random.uniform(), random.uniform())
+                               .cwiseProduct(domain.size);
+      if (std::all_of(domain.faces.begin(), domain.faces.end(),
+                      [&](const DomainFace& f) { return f.plane.normal.dot(x) < f.plane.offset; }))
+        seeds.push_back(x);
+    }
+    Tessellation t = voronoi_tessellation(seeds, domain);
+    regularise(t, {.max_edge_length = 0.13});
+    const TemporaryFile file("domain.tess", "");
+    write_tess(t, file.path());
+    const TessellationFile read = read_tess(file.path());
+    const Tessellation& back = read.tessellation;
+    EXPECT_FALSE(back.domain.is_box());
+    EXPECT_EQ(back.domain.shape, "cylinder");
+    EXPECT_EQ(back.domain.face_count(), sides + 2);
+    EXPECT_EQ(back.domain.surface_names(), (std::vector<std::string>{"z0", "z1", "side"}));
+    EXPECT_NEAR(back.domain.volume, 20, 1e-12);
+    ASSERT_EQ(back.vertices.size(), t.vertices.size());
+    for (std::size_t v = 0; v < t.vertices.size(); ++v)
+      EXPECT_LT((back.vertices[v] - t.vertices[v]).norm(), 1e-12);
+    for (std::size_t f = 0; f < t.topology.faces.size(); ++f)
+      EXPECT_EQ(back.topology.faces[f].domain_face, t.topology.faces[f].domain_face);
+    // Moved and twice as large, it is the same.
+    Tessellation moved = t;
+    const core::Vec3 shift(-3, 0.5, 7);
+    for (auto& x : moved.vertices) x = 2 * x + shift;
+    for (auto& x : moved.seeds) x = 2 * x + shift;
+    for (auto& p : moved.face_planes) p.offset = 2 * p.offset + p.normal.dot(shift);
+    for (auto& f : moved.domain.faces)
+      f.plane.offset = 2 * f.plane.offset + f.plane.normal.dot(shift);
+    write_tess(moved, file.path());
+    const TessellationFile again = read_tess(file.path());
+    EXPECT_NEAR(again.scale, 0.5, 1e-12);
+    EXPECT_LT((again.origin - shift).norm(), 1e-12);
+    for (std::size_t v = 0; v < t.vertices.size(); ++v)
+      EXPECT_LT((again.tessellation.vertices[v] - t.vertices[v]).norm(), 1e-11);
+    EXPECT_NEAR(read_tess(file.path(), LengthUnit::file).tessellation.domain.volume, 160, 1e-9);
   }
 }
 
@@ -170,7 +278,8 @@ TEST(TessReader, SaysWhereAFileIsWrong) {
   EXPECT_EQ(fault(replaced(text, "   3.5", "   2.0")),
             "3: version '2.0' of the format; 3 and later are read");
   EXPECT_EQ(fault(replaced(text, "3 standard", "3 periodic")),
-            "5: type 'periodic'; only standard is read");
+            "5: the tessellation is periodic, and its cells stick out of the domain; only "
+            "tessellations of the domain itself are read");
   EXPECT_EQ(fault(replaced(text, "rodrigues:passive", "quaternion:active")),
             "34: a quaternion of length 0.328229, not 1");
   EXPECT_NE(fault(replaced(text, "rodrigues:passive", "rodriguez"))
@@ -181,14 +290,18 @@ TEST(TessReader, SaysWhereAFileIsWrong) {
   EXPECT_NE(fault(replaced(text, "1.674209429732", "2.9")), "");
 }
 
-TEST(TessReader, RefusesWhatIsNoBox) {
+TEST(TessReader, RefusesFacesThatLeaveTheirDomain) {
   Tessellation t = grown(0.0);
   for (auto& x : t.vertices) x[0] += 0.1 * x[2];
   const TemporaryFile file("sheared.tess", "");
   write_tess(t, file.path());
-  const std::string message = fault(core::read_text(file.path()));
-  EXPECT_NE(message.find("lies on no side of the vertices' bounding box"), std::string::npos)
-      << message;
+  const std::string text = core::read_text(file.path());
+  EXPECT_NE(fault(text).find(" off the face x0 of the domain"), std::string::npos) << fault(text);
+  const std::string bare = text.substr(0, text.find(" **domain")) + "***end\n";
+  EXPECT_NE(fault(bare).find("lies neither on a side of the vertices' bounding box nor in a face "
+                             "of **domain"),
+            std::string::npos)
+      << fault(bare);
 }
 
 TEST(TessReader, AFileThatIsNotThereIsTheUsersToMend) {
