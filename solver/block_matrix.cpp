@@ -44,12 +44,17 @@ void copy_values(const double* values, std::size_t count, Mat matrix, MPI_Comm c
 
 }  // namespace
 
-BlockPattern::BlockPattern(const LocalMesh& local, const NodeExchange& exchange)
-    : local_(local), exchange_(exchange) {
-  std::vector<std::vector<PetscInt>> rows(local.local_nodes);
-  for (const auto& e : local.elements)
-    for (int a : e)
-      for (int b : e) rows[a].push_back(local.node_global[b]);
+BlockPattern::BlockPattern(NodeGraph graph, const NodeExchange& exchange)
+    : graph_(std::move(graph)), exchange_(exchange) {
+  const NodeGraph& g = graph_;
+  const auto n = static_cast<std::size_t>(g.element_nodes);
+  std::vector<std::vector<PetscInt>> rows(g.local_nodes);
+  const auto for_each_pair = [&](const auto& visit) {
+    for (std::size_t e = 0; e < g.elements.size(); e += n)
+      for (std::size_t a = e; a < e + n; ++a)
+        for (std::size_t b = e; b < e + n; ++b) visit(g.elements[a], g.node_global[g.elements[b]]);
+  };
+  for_each_pair([&](int row, PetscInt column) { rows[row].push_back(column); });
   for (auto& row : rows) sort_unique(row);
 
   // Ghost rows to their owners: length of each row, then its columns.
@@ -60,7 +65,7 @@ BlockPattern::BlockPattern(const LocalMesh& local, const NodeExchange& exchange)
       out[k].push_back(static_cast<PetscInt>(rows[ghost].size()));
       out[k].insert(out[k].end(), rows[ghost].begin(), rows[ghost].end());
     }
-  const auto in = solver::exchange(local.comm, ranks, out);
+  const auto in = solver::exchange(g.comm, ranks, out);
   const auto for_each_received = [&](const auto& visit) {
     for (std::size_t k = 0; k < ranks.size(); ++k) {
       std::size_t at = 0;
@@ -71,7 +76,7 @@ BlockPattern::BlockPattern(const LocalMesh& local, const NodeExchange& exchange)
     }
   };
   for_each_received([&](std::size_t, int node, PetscInt column) { rows[node].push_back(column); });
-  for (int i = 0; i < local.owned_nodes; ++i) sort_unique(rows[i]);
+  for (int i = 0; i < g.owned_nodes; ++i) sort_unique(rows[i]);
 
   row_start_.assign(1, 0);
   for (const auto& row : rows) {
@@ -84,11 +89,9 @@ BlockPattern::BlockPattern(const LocalMesh& local, const NodeExchange& exchange)
     received_[k].push_back(slot(node, column));
     received_stride_[k].push_back(stride(node));
   });
-  for (int i = 0; i < local.owned_nodes; ++i) diagonal_.push_back(slot(i, local.node_global[i]));
-  slots_.reserve(local.elements.size() * 100);
-  for (const auto& e : local.elements)
-    for (int a : e)
-      for (int b : e) slots_.push_back(slot(a, local.node_global[b]));
+  for (int i = 0; i < g.owned_nodes; ++i) diagonal_.push_back(slot(i, g.node_global[i]));
+  slots_.reserve(g.elements.size() * n);
+  for_each_pair([&](int row, PetscInt column) { slots_.push_back(slot(row, column)); });
 }
 
 std::int64_t BlockPattern::slot(int row, PetscInt column) const {
@@ -99,15 +102,16 @@ std::int64_t BlockPattern::slot(int row, PetscInt column) const {
   return 9 * row_start_[row] + 3 * (found - begin);
 }
 
-void BlockPattern::add(int element, const ElementMatrix& matrix,
-                       std::vector<double>& values) const {
-  const std::int64_t* slots = &slots_[static_cast<std::size_t>(element) * 100];
-  for (int a = 0; a < element_nodes; ++a) {
-    const int step = stride(local_.elements[element][a]);
-    for (int b = 0; b < element_nodes; ++b) {
-      double* block = values.data() + slots[10 * a + b];
-      for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) block[i * step + k] += matrix[a][i][b][k];
+void BlockPattern::add(int element, const double* matrix, std::vector<double>& values) const {
+  const auto n = static_cast<std::size_t>(graph_.element_nodes);
+  const std::size_t first = static_cast<std::size_t>(element) * n;
+  for (std::size_t a = 0; a < n; ++a) {
+    const int step = stride(graph_.elements[first + a]);
+    for (std::size_t b = 0; b < n; ++b) {
+      double* block = values.data() + slots_[(first + a) * n + b];
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+          block[i * static_cast<std::size_t>(step) + k] += matrix[(3 * a + i) * 3 * n + 3 * b + k];
     }
   }
 }
@@ -125,7 +129,7 @@ void BlockPattern::finish(const std::vector<std::uint8_t>& constrained,
           out[k].insert(out[k].end(), block + i * step, block + i * step + 3);
       }
     }
-  const auto in = solver::exchange(local_.comm, ranks, out);
+  const auto in = solver::exchange(graph_.comm, ranks, out);
   for (std::size_t k = 0; k < ranks.size(); ++k)
     for (std::size_t n = 0; n < received_[k].size(); ++n) {
       double* block = values.data() + received_[k][n];
@@ -133,7 +137,7 @@ void BlockPattern::finish(const std::vector<std::uint8_t>& constrained,
         for (int c = 0; c < 3; ++c)
           block[i * received_stride_[k][n] + c] += in[k][9 * n + 3 * i + c];
     }
-  for (int node = 0; node < local_.owned_nodes; ++node)
+  for (int node = 0; node < graph_.owned_nodes; ++node)
     for (int i = 0; i < 3; ++i)
       if (constrained[3 * static_cast<std::size_t>(node) + i])
         values[diagonal_[node] + static_cast<std::int64_t>(i) * stride(node) + i] = 1;
@@ -141,55 +145,20 @@ void BlockPattern::finish(const std::vector<std::uint8_t>& constrained,
 
 MatHandle BlockPattern::create() const {
   std::vector<PetscInt> start{0}, column;
-  column.reserve(9 * static_cast<std::size_t>(row_start_[local_.owned_nodes]));
-  for (int node = 0; node < local_.owned_nodes; ++node)
+  column.reserve(9 * static_cast<std::size_t>(row_start_[graph_.owned_nodes]));
+  for (int node = 0; node < graph_.owned_nodes; ++node)
     for (int i = 0; i < 3; ++i) {
       for (std::int64_t j = row_start_[node]; j < row_start_[node + 1]; ++j)
         for (PetscInt k = 0; k < 3; ++k) column.push_back(3 * columns_[j] + k);
       start.push_back(static_cast<PetscInt>(column.size()));
     }
-  const PetscInt rows = 3 * local_.owned_nodes;
-  return create_aij(local_.comm, rows, rows, 3 * local_.global_nodes, start, column, 3, 3);
+  const PetscInt rows = 3 * graph_.owned_nodes;
+  return create_aij(graph_.comm, rows, rows, 3 * graph_.global_nodes, start, column, 3, 3);
 }
 
 void BlockPattern::copy(const std::vector<double>& values, Mat matrix) const {
-  const std::size_t owned = 9 * static_cast<std::size_t>(row_start_[local_.owned_nodes]);
-  copy_values(values.data(), owned, matrix, local_.comm);
-}
-
-VolumeGradientMatrix::VolumeGradientMatrix(const LocalMesh& local) : local_(local) {
-  for (const auto& e : local.elements) {
-    std::array<int, element_nodes> order{};
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(),
-              [&](int a, int b) { return local.node_global[e[a]] < local.node_global[e[b]]; });
-    const std::size_t first = position_.size();
-    position_.resize(first + 30);
-    for (int n = 0; n < element_nodes; ++n)
-      for (int i = 0; i < 3; ++i) {
-        position_[first + 3 * static_cast<std::size_t>(order[n]) + i] =
-            static_cast<std::uint8_t>(3 * n + i);
-        columns_.push_back(3 * local.node_global[e[order[n]]] + i);
-      }
-  }
-}
-
-void VolumeGradientMatrix::set(int element, const ElementForces& b,
-                               std::vector<double>& values) const {
-  const std::size_t first = 30 * static_cast<std::size_t>(element);
-  for (std::size_t a = 0; a < element_nodes; ++a)
-    for (std::size_t i = 0; i < 3; ++i) values[first + position_[first + 3 * a + i]] = b[a][i];
-}
-
-MatHandle VolumeGradientMatrix::create() const {
-  std::vector<PetscInt> start(local_.elements.size() + 1);
-  for (std::size_t e = 0; e < start.size(); ++e) start[e] = static_cast<PetscInt>(30 * e);
-  return create_aij(local_.comm, static_cast<PetscInt>(local_.elements.size()),
-                    3 * local_.owned_nodes, 3 * local_.global_nodes, start, columns_, 1, 3);
-}
-
-void VolumeGradientMatrix::copy(const std::vector<double>& values, Mat matrix) const {
-  copy_values(values.data(), value_count(), matrix, local_.comm);
+  const std::size_t owned = 9 * static_cast<std::size_t>(row_start_[graph_.owned_nodes]);
+  copy_values(values.data(), owned, matrix, graph_.comm);
 }
 
 }  // namespace polyslip::solver

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 
+#include "solver/exchange.hpp"
+
 namespace polyslip::solver {
 namespace {
 
 void attach_rigid_body_modes(Mat A, const std::vector<double>& coordinates) {
   VecHandle x;
-  const auto n = static_cast<PetscInt>(coordinates.size());
-  check(VecCreateSeq(PETSC_COMM_SELF, n, x.out()));
+  check(MatCreateVecs(A, x.out(), nullptr));
   check(VecSetBlockSize(x.get(), 3));
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(x.get(), &values));
@@ -24,13 +25,20 @@ void attach_rigid_body_modes(Mat A, const std::vector<double>& coordinates) {
 void CoarseSolver::create(Mat A, const std::vector<double>& coordinates) {
   matrix_ = MatHandle::share(A);
   check(MatCreateVecs(A, rhs_.out(), solution_.out()));
-  check(KSPCreate(PETSC_COMM_SELF, ksp_.out()));
+  const MPI_Comm comm = PetscObjectComm(reinterpret_cast<PetscObject>(A));
+  check(KSPCreate(comm, ksp_.out()));
   PC pc = nullptr;
   check(KSPGetPC(ksp_.get(), &pc));
   PetscInt dofs = 0;
   check(MatGetSize(A, &dofs, nullptr));
   if (dofs <= settings_.max_direct_dofs) {
     check(KSPSetType(ksp_.get(), KSPPREONLY));
+    if (size_of(comm) > 1) {
+      check(PCSetType(pc, PCREDUNDANT));
+      KSP inner = nullptr;
+      check(PCRedundantGetKSP(pc, &inner));
+      check(KSPGetPC(inner, &pc));
+    }
     check(PCSetType(pc, PCLU));
     check(PCFactorSetMatSolverType(pc, MATSOLVERPETSC));
     check(PCFactorSetMatOrderingType(pc, MATORDERINGND));

@@ -1,5 +1,5 @@
 #pragma once
-// Solver of the vertex level, on one rank.
+// Solver of the vertex level.
 
 #include <vector>
 
@@ -7,9 +7,10 @@
 
 namespace polyslip::solver {
 
-/// Approximate inverse of the vertex level's matrix: an LU factorisation of a small one, else a few
+/// Approximate inverse of the vertex level's matrix: an LU factorisation of a small one (on every
+/// rank), else a few
 /// GMRES iterations with a cycle of smoothed aggregation (PETSc's GAMG, rigid-body modes).
-/// Sequential.
+/// Collective throughout.
 class CoarseSolver {
  public:
   struct Settings {
@@ -23,9 +24,9 @@ class CoarseSolver {
   explicit CoarseSolver(const Settings& settings) : settings_(settings) {}
 
   /// Sets up, or renews the numbers of an earlier set-up of the same matrix (its structure kept).
-  /// coordinates: [nodes][3].
+  /// coordinates: [owned nodes][3].
   void set_matrix(Mat A, const std::vector<double>& coordinates);
-  /// x = approximate inverse times b; both [dofs].
+  /// x = approximate inverse times b; both [owned dofs].
   void solve(const double* b, double* x);
   void reset() { *this = CoarseSolver(settings_); }
 

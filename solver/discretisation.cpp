@@ -7,21 +7,6 @@
 #include "solver/exchange.hpp"
 
 namespace polyslip::solver {
-namespace {
-
-/// Elements whose matrices are computed together, by threads, before they are summed in order.
-constexpr int chunk = 256;
-
-VecHandle create_vector(MPI_Comm comm, PetscInt local_size) {
-  VecHandle v;
-  check(VecCreate(comm, v.out()));
-  check(VecSetSizes(v.get(), local_size, PETSC_DETERMINE));
-  check(VecSetType(v.get(), VECSTANDARD));
-  return v;
-}
-
-}  // namespace
-
 std::string describe(Evaluation evaluation) {
   switch (evaluation) {
     case Evaluation::fine:
@@ -45,8 +30,6 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
       mixed_(mixed),
       bulk_(law.bulk_modulus()),
       shear_(law.shear_modulus()),
-      pattern_(local, exchange),
-      gradient_pattern_(local),
       reference_volumes_(std::move(reference_volume)) {
   const std::size_t n = local.elements.size();
   volumes_.assign(n, 0);
@@ -62,14 +45,9 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
   status_.assign(n * element_points, material::PointStatus::converged);
   element_forces_.resize(n);
   forces_.assign(static_cast<std::size_t>(local.local_nodes) * 3, 0);
-  values_.assign(pattern_.value_count(), 0);
-  A_augmented_ = pattern_.create();
   if (mixed_) {
-    gradient_values_.assign(gradient_pattern_.value_count(), 0);
-    B_ = gradient_pattern_.create();
-    C_ = create_vector(local.comm, static_cast<PetscInt>(n));
-    W_ = create_vector(local.comm, static_cast<PetscInt>(n));
-    schur_ = create_vector(local.comm, static_cast<PetscInt>(n));
+    for (auto* v : {&scale_, &C_, &W_, &schur_}) v->assign(n, 0);
+    for (auto* v : {&reference_, &departure_}) v->assign(n * element_points, 0);
   }
   if (!reference_volumes_.empty() && reference_volumes_.size() != n)
     throw core::InternalError("Discretisation: wrong number of reference volumes");
@@ -195,90 +173,53 @@ void Discretisation::sum_forces() {
   exchange_.add_ghosts(forces_, 3);
 }
 
-void Discretisation::compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
-                                    ElementMatrix& matrix, ElementForces& b,
-                                    ElementScales& scales) const {
-  const auto e = static_cast<std::size_t>(element);
-  ElementGeometry geometry;
-  element_geometry(positions(element, x_), geometry);
-  const double* tangent = &tangent_[e * 54 * element_points];
-  element_tangent(geometry, &stress_[e * 6 * element_points], tangent, mean_stress_[e],
-                  mixed_ ? 0 : bulk_, matrix);
-  if (mixed_) add_resistance_tangent(resistance(e, geometry), geometry, matrix);
-  element_volume_gradient(geometry, b);
-  const double modulus = std::max(element_shear_modulus(geometry, tangent), 1e-6 * shear_);
-  scales.modulus = modulus;
-  const double W = mixed_ ? augmentation(modulus) / geometry.volume : 0;
-  double squares = 0;
-  for (const auto& node : b)
-    for (double component : node) squares += component * component;
-  scales.pressure = W * std::sqrt(squares);
-
-  std::array<double, 30> keep{};
-  for (int a = 0; a < element_nodes; ++a)
-    for (int i = 0; i < 3; ++i) {
-      const auto dof = 3 * static_cast<std::size_t>(local_.elements[element][a]) + i;
-      keep[3 * a + i] = constrained[dof] ? 0 : 1;
-      b[a][i] *= keep[3 * a + i];
-    }
-  const double* flat_b = &b[0][0];
-  for (int row = 0; row < 30; ++row) {
-    double* A = &matrix[0][0][0][0] + 30 * row;
-    for (int c = 0; c < 30; ++c) A[c] = A[c] * keep[row] * keep[c] + W * flat_b[row] * flat_b[c];
-  }
-}
-
 double Discretisation::augmentation(double modulus) const {
   return std::min(augmentation_weight * modulus, bulk_);
 }
 
-LinearBlocks Discretisation::assemble(const std::vector<std::uint8_t>& constrained) {
-  const int n = local_.element_count();
-  std::vector<ElementMatrix> matrices(chunk);
-  std::vector<ElementForces> b(chunk);
-  scales_.resize(static_cast<std::size_t>(n));
-  std::fill(values_.begin(), values_.end(), 0.0);
-  for (int begin = 0; begin < n; begin += chunk) {
-    const int count = std::min(chunk, n - begin);
-#pragma omp parallel for schedule(static)
-    for (int i = 0; i < count; ++i)
-      compute_matrix(begin + i, constrained, matrices[i], b[i], scales_[begin + i]);
-    for (int i = 0; i < count; ++i) {
-      pattern_.add(begin + i, matrices[i], values_);
-      if (!mixed_) continue;
-      for (auto& node : b[i])
-        for (double& component : node) component *= scales_[begin + i].pressure;
-      gradient_pattern_.set(begin + i, b[i], gradient_values_);
-    }
+void Discretisation::linearise_element(std::size_t e) {
+  ElementGeometry geometry;
+  element_geometry(positions(static_cast<int>(e), x_), geometry);
+  const double mu =
+      std::max(element_shear_modulus(geometry, &tangent_[e * 54 * element_points]), 1e-6 * shear_);
+  const double V = geometry.volume, w = augmentation(mu) / V, compliance = V / bulk_;
+  ElementForces b;
+  element_volume_gradient(geometry, b);
+  double squares = 0;
+  for (const auto& node : b)
+    for (double component : node) squares += component * component;
+  scale_[e] = w * std::sqrt(squares);
+  const double d2 = scale_[e] * scale_[e];
+  C_[e] = d2 * compliance;
+  W_[e] = w / d2;
+  schur_[e] = d2 * (compliance + (1 - w * compliance) / (mu / V + w));
+  const PointVolumeResistance r = resistance(e, geometry);
+  for (std::size_t q = 0; q < element_points; ++q) {
+    reference_[element_points * e + q] = r.reference[q];
+    departure_[element_points * e + q] = r.s[q];
   }
+}
+
+LinearBlocks Discretisation::linearise() {
   LinearBlocks blocks;
-  pattern_.finish(constrained, values_);
-  pattern_.copy(values_, A_augmented_.get());
-  blocks.A_augmented = A_augmented_.get();
+  blocks.x = x_.data();
+  blocks.stress = stress_.data();
+  blocks.tangent = tangent_.data();
+  blocks.mean_stress = mean_stress_.data()->data();
   if (!mixed_) {
-    blocks.A = A_augmented_.get();
+    blocks.bulk = bulk_;
     return blocks;
   }
-  gradient_pattern_.copy(gradient_values_, B_.get());
-  PetscScalar *C = nullptr, *W = nullptr, *S = nullptr;
-  check(VecGetArrayWrite(C_.get(), &C));
-  check(VecGetArrayWrite(W_.get(), &W));
-  check(VecGetArrayWrite(schur_.get(), &S));
-  for (int e = 0; e < n; ++e) {
-    const double V = volumes_[e], mu = scales_[e].modulus;
-    const double d2 = scales_[e].pressure * scales_[e].pressure;
-    const double compliance = V / bulk_, w = augmentation(mu) / V;
-    C[e] = d2 * compliance;
-    W[e] = w / d2;
-    S[e] = d2 * (compliance + (1 - w * compliance) / (mu / V + w));
-  }
-  check(VecRestoreArrayWrite(C_.get(), &C));
-  check(VecRestoreArrayWrite(W_.get(), &W));
-  check(VecRestoreArrayWrite(schur_.get(), &S));
-  blocks.B = B_.get();
-  blocks.C = C_.get();
-  blocks.W = W_.get();
-  blocks.schur = schur_.get();
+  const int n = local_.element_count();
+#pragma omp parallel for schedule(static)
+  for (int e = 0; e < n; ++e) linearise_element(static_cast<std::size_t>(e));
+  blocks.kappa = kappa_;
+  blocks.reference = reference_.data();
+  blocks.departure = departure_.data();
+  blocks.scale = scale_.data();
+  blocks.C = C_.data();
+  blocks.W = W_.data();
+  blocks.schur = schur_.data();
   return blocks;
 }
 

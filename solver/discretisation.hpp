@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "material/crystal_law.hpp"
-#include "solver/block_matrix.hpp"
 #include "solver/element.hpp"
 #include "solver/linear_blocks.hpp"
 #include "solver/partition.hpp"
@@ -43,14 +42,14 @@ class Discretisation {
   Evaluation evaluate(const Configuration& old, const std::vector<double>& x,
                       const std::vector<double>& p, double time_step, double kappa);
 
-  /// Tangent blocks at the last evaluation, Dirichlet dofs (constrained: [local_nodes][3])
-  /// eliminated. Rows and columns of the mean stresses are scaled by `pressure_scale`: [A B^T; B
-  /// -C] becomes [A B^T D; D B -D C D]. Valid until the next call. Collective.
-  LinearBlocks assemble(const std::vector<std::uint8_t>& constrained);
+  /// The linearised equations at the last evaluation. Rows and columns of the mean stresses are
+  /// scaled by `pressure_scale`: [A B^T; B -C] becomes [A B^T D; D B -D C D]. Valid until the next
+  /// evaluation.
+  LinearBlocks linearise();
 
   /// D of an element: W |b|, which makes a volume residual the force that the augmentation makes of
   /// it, so that a linear solver's norm sees both.
-  double pressure_scale(std::size_t element) const { return scales_[element].pressure; }
+  double pressure_scale(std::size_t element) const { return scale_[element]; }
 
   /// Takes the last evaluation's state as `configuration`'s.
   void accept(const std::vector<double>& x, const std::vector<double>& p,
@@ -78,19 +77,13 @@ class Discretisation {
   const material::CrystalLaw& law() const { return law_; }
 
  private:
-  struct ElementScales {
-    double modulus = 0, pressure = 0;
-  };
   const LocalMesh& local_;
   const NodeExchange& exchange_;
   const material::CrystalLaw& law_;
   bool mixed_;
   double bulk_, shear_;
-  BlockPattern pattern_;
-  VolumeGradientMatrix gradient_pattern_;
-  MatHandle A_augmented_, B_;
-  VecHandle C_, W_, schur_;
-  std::vector<double> values_, gradient_values_;
+  std::vector<double> scale_, C_, W_, schur_;  // [elements] of the linear blocks
+  std::vector<double> reference_, departure_;  // [elements][4] of the points' volume resistance
   std::vector<double> reference_volumes_, volumes_, volume_gap_, jacobian_ratios_, volume_ratio_;
   std::vector<double> step_ratio_;  // [elements][4] det f of the point over the step
   double kappa_ = 0;
@@ -98,7 +91,6 @@ class Discretisation {
   std::vector<std::array<double, element_points>> mean_stress_;  // [elements] of the points
   std::vector<material::PointStatus> status_;
   std::vector<ElementForces> element_forces_;
-  std::vector<ElementScales> scales_;
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
   PointVolumeResistance resistance(std::size_t element, const ElementGeometry& geometry) const;
@@ -109,9 +101,7 @@ class Discretisation {
   void sum_forces();
   /// W V of an element [MPa]: no more than K, where W = 1/C condenses the pressure exactly.
   double augmentation(double modulus) const;
-  /// A_e + W b b^T and b, constrained dofs at zero; the element's scales.
-  void compute_matrix(int element, const std::vector<std::uint8_t>& constrained,
-                      ElementMatrix& matrix, ElementForces& b, ElementScales& scales) const;
+  void linearise_element(std::size_t element);
 };
 
 }  // namespace polyslip::solver

@@ -11,12 +11,6 @@
 namespace polyslip::solver {
 namespace {
 
-int checked_count(std::size_t bytes) {
-  if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-    throw core::InternalError("exchange: more than 2 GB in one message");
-  return static_cast<int>(bytes);
-}
-
 double reduce(MPI_Comm comm, double value, MPI_Op op) {
   double result = 0;
   MPI_Allreduce(&value, &result, 1, MPI_DOUBLE, op, comm);
@@ -24,6 +18,12 @@ double reduce(MPI_Comm comm, double value, MPI_Op op) {
 }
 
 }  // namespace
+
+int message_size(std::size_t bytes) {
+  if (bytes > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw core::InternalError("exchange: more than 2 GB in one message");
+  return static_cast<int>(bytes);
+}
 
 int rank_of(MPI_Comm comm) {
   int rank = 0;
@@ -104,10 +104,10 @@ void scatter_bytes(MPI_Comm comm, const std::vector<std::vector<char>>& parts,
   if (root) {
     mine = parts[0];
     for (int r = 1; r < ranks; ++r)
-      MPI_Send(parts[r].data(), checked_count(parts[r].size()), MPI_BYTE, r, 0, comm);
+      MPI_Send(parts[r].data(), message_size(parts[r].size()), MPI_BYTE, r, 0, comm);
   } else {
     mine.resize(static_cast<std::size_t>(count));
-    MPI_Recv(mine.data(), checked_count(mine.size()), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);
+    MPI_Recv(mine.data(), message_size(mine.size()), MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);
   }
 }
 
@@ -117,14 +117,14 @@ std::vector<std::vector<char>> gather_bytes(MPI_Comm comm, const std::vector<cha
   const auto count = static_cast<std::int64_t>(mine.size());
   MPI_Gather(&count, 1, MPI_INT64_T, counts.data(), 1, MPI_INT64_T, 0, comm);
   if (rank_of(comm) != 0) {
-    MPI_Send(mine.data(), checked_count(mine.size()), MPI_BYTE, 0, 0, comm);
+    MPI_Send(mine.data(), message_size(mine.size()), MPI_BYTE, 0, 0, comm);
     return {};
   }
   std::vector<std::vector<char>> parts(static_cast<std::size_t>(ranks));
   parts[0] = mine;
   for (int r = 1; r < ranks; ++r) {
     parts[r].resize(static_cast<std::size_t>(counts[r]));
-    MPI_Recv(parts[r].data(), checked_count(parts[r].size()), MPI_BYTE, r, 0, comm,
+    MPI_Recv(parts[r].data(), message_size(parts[r].size()), MPI_BYTE, r, 0, comm,
              MPI_STATUS_IGNORE);
   }
   return parts;
@@ -144,9 +144,9 @@ std::vector<std::vector<char>> exchange_bytes(MPI_Comm comm, const std::vector<i
   std::vector<std::vector<char>> received(n);
   for (std::size_t i = 0; i < n; ++i) {
     received[i].resize(static_cast<std::size_t>(in[i]));
-    MPI_Irecv(received[i].data(), checked_count(received[i].size()), MPI_BYTE, ranks[i], 2, comm,
+    MPI_Irecv(received[i].data(), message_size(received[i].size()), MPI_BYTE, ranks[i], 2, comm,
               &requests[i]);
-    MPI_Isend(parts[i].data(), checked_count(parts[i].size()), MPI_BYTE, ranks[i], 2, comm,
+    MPI_Isend(parts[i].data(), message_size(parts[i].size()), MPI_BYTE, ranks[i], 2, comm,
               &requests[n + i]);
   }
   MPI_Waitall(static_cast<int>(2 * n), requests.data(), MPI_STATUSES_IGNORE);

@@ -25,6 +25,9 @@ int maximum(MPI_Comm comm, int value);
 /// Collective.
 void on_root(MPI_Comm comm, const std::function<void()>& task);
 
+/// A number of bytes as MPI takes it; throws core::InternalError beyond 2 GB.
+int message_size(std::size_t bytes);
+
 namespace detail {
 void scatter_bytes(MPI_Comm comm, const std::vector<std::vector<char>>& parts,
                    std::vector<char>& mine);

@@ -1,44 +1,51 @@
 #pragma once
-// What the linear solver is given: layout of the unknowns and blocks of the saddle-point system.
+// What the linear solver is given: the distributed mesh with its Dirichlet dofs, and the linearised
+// equations element by element. Nothing is assembled but the vertex level.
 
-#include <mpi.h>
-#include <petscksp.h>
-
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "solver/partition.hpp"
+
 namespace polyslip::solver {
 
-/// Rows of this rank; PETSc's global numbering (3 dofs a node, nodes owned contiguously).
+/// The unknowns: three displacements a node, then one pressure an element (mixed element).
 struct LinearLayout {
-  MPI_Comm comm = MPI_COMM_SELF;
-  PetscInt local_nodes = 0;      ///< nodes this rank owns
-  PetscInt local_pressures = 0;  ///< elements this rank owns (0 for the displacement element)
-  /// For each owned node, the global nodes whose mean it is on the vertex level: itself twice for
-  /// a corner, the two ends of its edge for a mid node.
-  std::vector<std::array<PetscInt, 2>> parents;
-  std::vector<std::uint8_t> is_corner;    ///< [local_nodes]
-  std::vector<double> coordinates;        ///< [local_nodes][3], for the rigid-body modes
+  const LocalMesh* local = nullptr;
+  const NodeExchange* exchange = nullptr;
+  bool mixed = true;                      ///< else the displacement element, without pressures
+  std::vector<double> coordinates;        ///< [owned_nodes][3], for the rigid-body modes
   std::vector<std::uint8_t> constrained;  ///< [local_nodes][3] Dirichlet dofs
+
+  std::size_t displacements() const { return 3 * static_cast<std::size_t>(local->owned_nodes); }
+  std::size_t pressures() const { return mixed ? local->elements.size() : 0; }
 };
 
-/// The blocks, assembled. Dirichlet rows and columns of A and A_augmented and columns of B are
-/// already eliminated (unit diagonal in A, zero columns in B). The augmentation W is one positive
-/// number an element; min(4 mu_e, K) / V_e is a good one (W = 1/C condenses the pressure exactly),
-/// mu_e being half the geometric mean of the five eigenvalues of the deviatoric tangent: det^(1/5)
-/// / 2, meaned over the points (with the harmonic mean iterations double). Whoever wants a volume
-/// residual to count in the solver's 2-norm scales the rows of B (and B^T, C, W, schur with them)
-/// to units of force.
+/// The blocks of the saddle-point system, on the element level (solver/element.hpp). Points are
+/// innermost. The arrays must live as long as the blocks are used.
+///   A: sum over the elements of element_tangent + add_resistance_tangent
+///   B: a row D_e b_e an element, b_e = dV_e/du;  C, W, S: one number an element
+/// Rows and columns of Dirichlet dofs are left out by the solver. The augmentation W D^2 is one
+/// positive number an element; min(w mu_e, K) / V_e is a good one (1/C condenses the pressure
+/// exactly), mu_e being half the geometric mean of the five eigenvalues of the deviatoric tangent:
+/// det^(1/5) / 2, meaned over the points (with the harmonic mean iterations double). D scales the
+/// volume residuals to forces, so that a 2-norm sees both.
 struct LinearBlocks {
-  Mat A = nullptr;            ///< BAIJ/AIJ, block size 3; not used in the augmented form
-  Mat A_augmented = nullptr;  ///< A + B^T W B; = A for the displacement element
-  Mat B = nullptr;            ///< [pressures][3 nodes]; null for the displacement element
-  Vec C = nullptr;            ///< [pressures] V_e / K; null likewise
-  Vec W = nullptr;            ///< [pressures] the augmentation; null likewise
-  /// [pressures] C + (1 - W C) / (mu_e / V_e + W): diagonal Schur complement of the augmented
-  /// system, positive; with W = w mu_e / V_e and K >> mu_e it is V_e (1/((1 + w) mu_e) + 1/K).
-  Vec schur = nullptr;
+  const double* x = nullptr;            ///< [local_nodes][3] positions
+  const double* stress = nullptr;       ///< [elements][6][4] deviatoric, Mandel
+  const double* tangent = nullptr;      ///< [elements][54][4] of the law
+  const double* mean_stress = nullptr;  ///< [elements][4]
+  double bulk = 0;                      ///< K of the displacement element, 0 of the mixed one
+  double kappa = 0;                     ///< of solver/point_volumes.hpp
+  const double* reference = nullptr;    ///< [elements][4] W_q likewise; read if kappa > 0
+  const double* departure = nullptr;    ///< [elements][4] s_q likewise
+  // Of the mixed element, [elements]; null for the displacement element.
+  const double* scale = nullptr;  ///< D
+  const double* C = nullptr;      ///< D^2 V / K
+  const double* W = nullptr;      ///< augmentation
+  /// C + (1 - W C) / (D^-2 mu_e / V + W): diagonal Schur complement of the augmented system,
+  /// positive; with W D^2 = w mu_e / V and K >> mu_e it is D^2 V (1/((1 + w) mu_e) + 1/K).
+  const double* schur = nullptr;
 };
 
 }  // namespace polyslip::solver

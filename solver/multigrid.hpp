@@ -18,27 +18,33 @@ class Multigrid {
     Chebyshev::Settings smoother;
     CoarseSolver::Settings coarse;
   };
-  Multigrid(const LinearLayout& layout, const Settings& settings)
-      : settings_(settings),
-        vertices_(layout),
-        smoother_(settings.smoother),
-        coarse_(settings.coarse) {}
+  Multigrid(const LinearLayout& layout, const Settings& settings);
 
-  /// A: BAIJ of block size 3; the structure is that of the first call.
-  void set_matrix(Mat A);
-  /// Lets the next `set_matrix` aggregate anew instead of renewing numbers only.
-  void renew_hierarchy() { coarse_.reset(); }
-  /// x = V-cycle applied to b.
-  void apply(Vec b, Vec x);
+  /// Takes over the operator's tangents on the quadratic level.
+  void set(const KrylovOperator& fine) { fine_.set(fine); }
+  /// Renews the levels below and the smoother's interval, unless the quadratic level's diagonal has
+  /// changed by less than `kept_change` (rms of the logarithm of its blocks' traces) since then.
+  void renew_below(double kept_change);
+  /// Lets the next `renew_below` aggregate anew instead of renewing numbers only.
+  void renew_hierarchy() {
+    coarse_.reset();
+    scales_.clear();
+  }
+  /// x = V-cycle applied to b; both [owned_nodes][3]. May not be in place.
+  void apply(const float* b, float* x);
+  FineLevel& fine() { return fine_; }
 
  private:
   Settings settings_;
+  FineLevel fine_;
   VertexLevel vertices_;
   Chebyshev smoother_;
   CoarseSolver coarse_;
-  MatHandle matrix_;
-  VecHandle residual_;
+  std::vector<float> x_, residual_, correction_;
   std::vector<double> coarse_rhs_, coarse_solution_;
+  std::vector<float> scales_;  // [owned_nodes] of the diagonal when the levels below were made
+
+  bool serves(const std::vector<float>& scales, double kept_change) const;
 };
 
 }  // namespace polyslip::solver

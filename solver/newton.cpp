@@ -29,16 +29,12 @@ void from_petsc(Vec from, std::size_t count, std::vector<double>& to) {
 
 LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t>& constrained,
                          const std::vector<double>& x) {
-  const LocalMesh& local = d.local();
-  const auto dofs = 3 * static_cast<long>(local.owned_nodes);
   LinearLayout layout;
-  layout.comm = local.comm;
-  layout.local_nodes = local.owned_nodes;
-  layout.local_pressures = d.mixed() ? local.element_count() : 0;
-  layout.parents = local.parents;
-  layout.is_corner = local.is_corner;
-  layout.coordinates.assign(x.begin(), x.begin() + dofs);
-  layout.constrained.assign(constrained.begin(), constrained.begin() + dofs);
+  layout.local = &d.local();
+  layout.exchange = &d.exchange();
+  layout.mixed = d.mixed();
+  layout.coordinates.assign(x.begin(), x.begin() + 3 * static_cast<long>(d.local().owned_nodes));
+  layout.constrained = constrained;
   return layout;
 }
 
@@ -90,7 +86,7 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
       return report;
     }
     ++report.iterations;
-    linear_->set_blocks(discretisation_.assemble(constrained_));
+    linear_->set_blocks(discretisation_.linearise());
     if (!solve_linear(report)) return report;
     if (!search(problem, report.balance, x, p, report)) return report;
   }

@@ -1,6 +1,7 @@
 #include "solver/partition.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -235,7 +236,8 @@ std::vector<double> Distribution::gather_elements(const std::vector<double>& val
   return parts.empty() ? std::vector<double>{} : place(parts, elements_of_, components);
 }
 
-NodeExchange::NodeExchange(const LocalMesh& local) : comm_(local.comm) {
+NodeExchange::NodeExchange(const LocalMesh& local, Profile* profile)
+    : comm_(local.comm), profile_(profile) {
   const int ranks = size_of(comm_), me = rank_of(comm_);
   std::vector<PetscInt> first(static_cast<std::size_t>(ranks) + 1);
   MPI_Allgather(&local.first_node, 1, MPIU_INT, first.data(), 1, MPIU_INT, comm_);
@@ -266,24 +268,68 @@ NodeExchange::NodeExchange(const LocalMesh& local) : comm_(local.comm) {
   }
 }
 
-void NodeExchange::update_ghosts(std::vector<double>& values, int components) const {
-  std::vector<std::vector<double>> out;
-  for (const auto& nodes : seen_by_) out.push_back(pick(values, nodes, components));
-  const auto in = exchange(comm_, neighbours_, out);
-  for (std::size_t k = 0; k < in.size(); ++k)
-    for (std::size_t i = 0; i < in[k].size(); ++i)
-      values[static_cast<std::size_t>(ghosts_of_[k][i / components]) * components +
-             i % components] = in[k][i];
+NodeExchange::NodeExchange(const NodeExchange& all, const std::vector<int>& number)
+    : comm_(all.comm_), profile_(all.profile_) {
+  const auto numbers = [&](const std::vector<int>& nodes) {
+    std::vector<int> kept;
+    for (int n : nodes)
+      if (number[n] >= 0) kept.push_back(number[n]);
+    return kept;
+  };
+  for (std::size_t k = 0; k < all.neighbours_.size(); ++k) {
+    auto seen = numbers(all.seen_by_[k]), ghosts = numbers(all.ghosts_of_[k]);
+    if (seen.empty() && ghosts.empty()) continue;
+    neighbours_.push_back(all.neighbours_[k]);
+    seen_by_.push_back(std::move(seen));
+    ghosts_of_.push_back(std::move(ghosts));
+  }
 }
 
-void NodeExchange::add_ghosts(std::vector<double>& values, int components) const {
-  std::vector<std::vector<double>> out;
-  for (const auto& nodes : ghosts_of_) out.push_back(pick(values, nodes, components));
-  const auto in = exchange(comm_, neighbours_, out);
-  for (std::size_t k = 0; k < in.size(); ++k)
-    for (std::size_t i = 0; i < in[k].size(); ++i)
-      values[static_cast<std::size_t>(seen_by_[k][i / components]) * components + i % components] +=
-          in[k][i];
+std::vector<char> NodeExchange::pass(const char* values, std::size_t size, const Lists& out,
+                                     const Lists& in) const {
+  const Stage stage(profile_, "exchange of nodes");
+  const auto count = [](const Lists& lists) {
+    std::size_t n = 0;
+    for (const auto& list : lists) n += list.size();
+    return n;
+  };
+  std::vector<char> sent(count(out) * size), received(count(in) * size);
+  std::vector<MPI_Request> requests;
+  std::size_t at = 0;
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    if (in[k].empty()) continue;
+    const std::size_t bytes = in[k].size() * size;
+    MPI_Irecv(received.data() + at, message_size(bytes), MPI_BYTE, neighbours_[k], 3, comm_,
+              &requests.emplace_back());
+    at += bytes;
+  }
+  char* to = sent.data();
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    if (out[k].empty()) continue;
+    const char* begin = to;
+    for (int node : out[k]) {
+      std::memcpy(to, values + static_cast<std::size_t>(node) * size, size);
+      to += size;
+    }
+    const auto bytes = static_cast<std::size_t>(to - begin);
+    MPI_Isend(begin, message_size(bytes), MPI_BYTE, neighbours_[k], 3, comm_,
+              &requests.emplace_back());
+    if (profile_) profile_->count_message(bytes);
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  return received;
+}
+
+void NodeExchange::move(void* values, std::size_t size) const {
+  if (neighbours_.empty()) return;
+  char* bytes = static_cast<char*>(values);
+  const std::vector<char> received = pass(bytes, size, seen_by_, ghosts_of_);
+  const char* from = received.data();
+  for (const auto& nodes : ghosts_of_)
+    for (int node : nodes) {
+      std::memcpy(bytes + static_cast<std::size_t>(node) * size, from, size);
+      from += size;
+    }
 }
 
 }  // namespace polyslip::solver

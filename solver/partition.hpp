@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/mesh.hpp"
+#include "solver/profile.hpp"
 
 namespace polyslip::solver {
 
@@ -59,26 +60,64 @@ class Distribution {
   std::vector<int> owned_of_;
 };
 
-/// Values of nodes between their owner and the ranks that see them as ghosts.
+/// Values of nodes between their owner and the ranks that see them as ghosts. One message each way
+/// between two ranks that share nodes.
 class NodeExchange {
  public:
-  /// Collective.
-  explicit NodeExchange(const LocalMesh& local);
+  /// Collective. Time and traffic are booked in `profile`, if there is one.
+  explicit NodeExchange(const LocalMesh& local, Profile* profile = nullptr);
+  /// The same for some of the nodes: number[node] is the new number, or negative.
+  NodeExchange(const NodeExchange& all, const std::vector<int>& number);
 
   /// Ghosts take the value of their owner. values: [local_nodes][components]. Collective.
-  void update_ghosts(std::vector<double>& values, int components) const;
+  template <class T>
+  void update_ghosts(T* values, int components) const {
+    move(values, sizeof(T) * static_cast<std::size_t>(components));
+  }
+  template <class T>
+  void update_ghosts(std::vector<T>& values, int components) const {
+    update_ghosts(values.data(), components);
+  }
   /// Owners add the values of their ghosts, rank by rank; ghosts keep theirs. Collective.
-  void add_ghosts(std::vector<double>& values, int components) const;
+  template <class T>
+  void add_ghosts(T* values, int components) const;
+  template <class T>
+  void add_ghosts(std::vector<T>& values, int components) const {
+    add_ghosts(values.data(), components);
+  }
 
   const std::vector<int>& neighbours() const { return neighbours_; }
   /// For each neighbour: owned nodes that it sees, ghosts that it owns; in the same order there.
   const std::vector<std::vector<int>>& seen_by() const { return seen_by_; }
   const std::vector<std::vector<int>>& ghosts_of() const { return ghosts_of_; }
+  MPI_Comm comm() const { return comm_; }
+  Profile* profile() const { return profile_; }
 
  private:
+  using Lists = std::vector<std::vector<int>>;
   MPI_Comm comm_;
+  Profile* profile_ = nullptr;
   std::vector<int> neighbours_;
-  std::vector<std::vector<int>> seen_by_, ghosts_of_;
+  Lists seen_by_, ghosts_of_;
+
+  /// Sends the entities of `out`, of `size` bytes each, to the neighbours, and returns what they
+  /// sent for those of `in`, one after the other.
+  std::vector<char> pass(const char* values, std::size_t size, const Lists& out,
+                         const Lists& in) const;
+  void move(void* values, std::size_t size) const;
 };
+
+template <class T>
+void NodeExchange::add_ghosts(T* values, int components) const {
+  if (neighbours_.empty()) return;
+  const auto n = static_cast<std::size_t>(components);
+  const std::vector<char> bytes =
+      pass(reinterpret_cast<const char*>(values), n * sizeof(T), ghosts_of_, seen_by_);
+  const T* received = reinterpret_cast<const T*>(bytes.data());
+  for (const auto& nodes : seen_by_)
+    for (int node : nodes)
+      for (std::size_t c = 0; c < n; ++c)
+        values[static_cast<std::size_t>(node) * n + c] += *received++;
+}
 
 }  // namespace polyslip::solver

@@ -9,270 +9,113 @@
 namespace polyslip::solver {
 namespace {
 
-template <class T>
-std::vector<T> gather_all(MPI_Comm comm, const std::vector<T>& mine, MPI_Datatype type) {
-  int ranks = 1;
-  MPI_Comm_size(comm, &ranks);
-  std::vector<int> counts(ranks), offsets(ranks + 1, 0);
-  const int count = static_cast<int>(mine.size());
-  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  for (int r = 0; r < ranks; ++r) offsets[r + 1] = offsets[r] + counts[r];
-  std::vector<T> all(offsets[ranks]);
-  MPI_Allgatherv(mine.data(), count, type, all.data(), counts.data(), offsets.data(), type, comm);
-  return all;
+void check_sizes(const LinearLayout& layout) {
+  const std::size_t owned = layout.displacements();
+  const std::size_t all = 3 * static_cast<std::size_t>(layout.local->local_nodes);
+  if (layout.coordinates.size() != owned || layout.constrained.size() != all)
+    throw core::InternalError(
+        fmt::format("LinearLayout: {} nodes, {} of them owned, but {} constraints, {} coordinates",
+                    all / 3, owned / 3, layout.constrained.size(), layout.coordinates.size()));
 }
 
-void check_sizes(const LinearLayout& layout) {
-  const auto n = static_cast<std::size_t>(layout.local_nodes);
-  if (layout.parents.size() != n || layout.is_corner.size() != n ||
-      layout.coordinates.size() != 3 * n || layout.constrained.size() != 3 * n) {
-    throw core::InternalError(
-        fmt::format("LinearLayout: {} nodes, but {} parents, {} corner flags, {} coordinates, {} "
-                    "constraints",
-                    n, layout.parents.size(), layout.is_corner.size(), layout.coordinates.size(),
-                    layout.constrained.size()));
-  }
+/// Numbers the corner nodes, owned ones first as the nodes are; -1 for a mid node.
+std::vector<int> number_corners(const LocalMesh& local) {
+  std::vector<int> number(static_cast<std::size_t>(local.local_nodes), -1);
+  for (const auto& e : local.elements)
+    for (int a = 0; a < 4; ++a) number[e[a]] = 0;
+  int next = 0;
+  for (int& n : number)
+    if (n == 0) n = next++;
+  return number;
 }
 
 }  // namespace
 
-VertexLevel::VertexLevel(const LinearLayout& layout)
-    : comm_(layout.comm), local_nodes_(layout.local_nodes) {
+VertexLevel::VertexLevel(const LinearLayout& layout) : layout_(layout) {
   check_sizes(layout);
-  MPI_Comm_size(comm_, &ranks_);
-  MPI_Exscan(&local_nodes_, &first_, 1, MPIU_INT, MPI_SUM, comm_);
-  int rank = 0;
-  MPI_Comm_rank(comm_, &rank);
-  if (rank == 0) first_ = 0;
-
-  std::vector<PetscInt> mine;
-  for (const auto& p : layout.parents) mine.insert(mine.end(), {p[0], p[1]});
-  const std::vector<PetscInt> parents = gather_all(comm_, mine, MPIU_INT);
-  const auto corner = gather_all(comm_, layout.is_corner, MPI_UINT8_T);
-  const auto fixed = gather_all(comm_, layout.constrained, MPI_UINT8_T);
-  const auto x = gather_all(comm_, layout.coordinates, MPI_DOUBLE);
-
-  std::vector<PetscInt> vertex(corner.size(), -1);
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    if (!corner[i]) continue;
-    vertex[i] = nodes_++;
-    constrained_.insert(constrained_.end(), fixed.begin() + 3 * i, fixed.begin() + 3 * i + 3);
-    coordinates_.insert(coordinates_.end(), x.begin() + 3 * i, x.begin() + 3 * i + 3);
-  }
-  parents_.resize(corner.size());
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    for (int e = 0; e < 2; ++e) {
-      const PetscInt p = parents[2 * i + e];
-      if (p < 0 || p >= static_cast<PetscInt>(corner.size()) || !corner[p]) {
-        throw core::InternalError(
-            fmt::format("LinearLayout: parent {} of node {} is no corner", p, i));
-      }
-      parents_[i].vertex[e] = vertex[p];
-      for (int a = 0; a < 3; ++a) {
-        if (!fixed[3 * i + a] && !fixed[3 * p + a]) parents_[i].mask[e] |= 1u << a;
-      }
+  const LocalMesh& local = *layout.local;
+  const std::vector<int> number = number_corners(local);
+  NodeGraph graph;
+  graph.comm = local.comm;
+  for (int n = 0; n < local.local_nodes; ++n) {
+    if (number[n] < 0) continue;
+    ++graph.local_nodes;
+    if (local.owned(n)) ++graph.owned_nodes;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t dof = 3 * static_cast<std::size_t>(n) + i;
+      constrained_.push_back(layout.constrained[dof]);
+      if (local.owned(n)) coordinates_.push_back(layout.coordinates[dof]);
     }
+  }
+  PetscInt first = 0;
+  const PetscInt owned = graph.owned_nodes;
+  MPI_Exscan(&owned, &first, 1, MPIU_INT, MPI_SUM, local.comm);
+  MPI_Allreduce(&owned, &graph.global_nodes, 1, MPIU_INT, MPI_SUM, local.comm);
+  exchange_ = std::make_unique<NodeExchange>(*layout.exchange, number);
+  graph.node_global.resize(static_cast<std::size_t>(graph.local_nodes));
+  for (int v = 0; v < graph.owned_nodes; ++v) graph.node_global[v] = first + v;
+  exchange_->update_ghosts(graph.node_global, 1);
+
+  parents_.resize(static_cast<std::size_t>(local.owned_nodes));
+  for (const auto& e : local.elements) {
+    for (int a = 0; a < 4; ++a) {
+      graph.elements.push_back(number[e[a]]);
+      if (local.owned(e[a])) parents_[e[a]] = {number[e[a]], number[e[a]]};
+    }
+    for (int m = 0; m < 6; ++m) {
+      const auto [a, b] = mesh::tetrahedron_edges[m];
+      if (local.owned(e[4 + m])) parents_[e[4 + m]] = {number[e[a]], number[e[b]]};
+    }
+  }
+  pattern_ = std::make_unique<BlockPattern>(std::move(graph), *exchange_);
+  matrix_ = pattern_->create();
+  work_.resize(constrained_.size());
+}
+
+void VertexLevel::prolong(const double* coarse, float* fine) {
+  const std::size_t n = coordinates_.size();
+  std::copy_n(coarse, n, work_.begin());
+  exchange_->update_ghosts(work_, 3);
+  for (std::size_t i = 0; i < work_.size(); ++i)
+    if (constrained_[i]) work_[i] = 0;
+  for (std::size_t k = 0; k < parents_.size(); ++k) {
+    const double* a = &work_[3 * static_cast<std::size_t>(parents_[k][0])];
+    const double* b = &work_[3 * static_cast<std::size_t>(parents_[k][1])];
+    for (std::size_t i = 0; i < 3; ++i)
+      fine[3 * k + i] =
+          layout_.constrained[3 * k + i] ? 0.0f : static_cast<float>(0.5 * (a[i] + b[i]));
   }
 }
 
-void VertexLevel::prolong_add(const double* coarse, double* fine) const {
-  for (PetscInt i = 0; i < local_nodes_; ++i) {
-    const Parents& p = parents_[first_ + i];
-    for (int e = 0; e < 2; ++e) {
-      for (int a = 0; a < 3; ++a) {
-        if (p.mask[e] >> a & 1) fine[3 * i + a] += 0.5 * coarse[3 * p.vertex[e] + a];
-      }
-    }
-  }
+void VertexLevel::restrict_to(const float* fine, double* coarse) {
+  std::fill(work_.begin(), work_.end(), 0.0);
+  for (std::size_t k = 0; k < parents_.size(); ++k)
+    for (const int vertex : parents_[k])
+      for (std::size_t i = 0; i < 3; ++i)
+        work_[3 * static_cast<std::size_t>(vertex) + i] +=
+            0.5 * static_cast<double>(fine[3 * k + i]);
+  exchange_->add_ghosts(work_, 3);
+  for (std::size_t i = 0; i < coordinates_.size(); ++i) coarse[i] = constrained_[i] ? 0 : work_[i];
 }
 
-void VertexLevel::restrict_to(const double* fine, double* coarse) const {
-  std::fill_n(coarse, 3 * nodes_, 0.0);
-  for (PetscInt i = 0; i < local_nodes_; ++i) {
-    const Parents& p = parents_[first_ + i];
-    for (int e = 0; e < 2; ++e) {
-      for (int a = 0; a < 3; ++a) {
-        if (p.mask[e] >> a & 1) coarse[3 * p.vertex[e] + a] += 0.5 * fine[3 * i + a];
-      }
-    }
-  }
-  if (ranks_ > 1) {
-    MPI_Allreduce(MPI_IN_PLACE, coarse, static_cast<int>(3 * nodes_), MPI_DOUBLE, MPI_SUM, comm_);
-  }
-}
-
-/// Calls visit(i, blocks, first, last, column) for each row of the diagonal, then of the
-/// off-diagonal part; `column` turns the part's block columns into global nodes.
-template <class Visit>
-void VertexLevel::for_each_part(Mat A, Visit visit) const {
-  PetscBool sequential = PETSC_FALSE;
-  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(A), MATSEQBAIJ, &sequential));
-  std::array<Mat, 2> parts{A, nullptr};
-  const PetscInt* ghosts = nullptr;
-  if (!sequential) check(MatMPIBAIJGetSeqBAIJ(A, &parts[0], &parts[1], &ghosts));
-  for (int part = 0; part < (sequential ? 1 : 2); ++part) {
-    PetscInt rows = 0;
-    RowBlocks blocks;
-    PetscBool done = PETSC_FALSE;
-    PetscScalar* values = nullptr;
-    check(MatGetRowIJ(parts[part], 0, PETSC_FALSE, PETSC_TRUE, &rows, &blocks.start, &blocks.column,
-                      &done));
-    if (!done || rows != local_nodes_) {
-      throw core::InternalError(
-          fmt::format("VertexLevel: {} block rows where {} are expected", rows, local_nodes_));
-    }
-    check(MatSeqBAIJGetArray(parts[part], &values));
-    blocks.values = values;
-    visit(blocks, [&](PetscInt c) { return part == 0 ? first_ + c : ghosts[c]; });
-    check(MatSeqBAIJRestoreArray(parts[part], &values));
-    check(MatRestoreRowIJ(parts[part], 0, PETSC_FALSE, PETSC_TRUE, &rows, &blocks.start,
-                          &blocks.column, &done));
-  }
-}
-
-void VertexLevel::build_structure(Mat A) {
-  std::vector<std::vector<PetscInt>> rows(nodes_);
-  for_each_part(A, [&](const RowBlocks& blocks, auto column) {
-    for (PetscInt i = 0; i < local_nodes_; ++i) {
-      for (const PetscInt I : parents_[first_ + i].vertex) {
-        for (PetscInt k = blocks.start[i]; k < blocks.start[i + 1]; ++k) {
-          const auto& J = parents_[column(blocks.column[k])].vertex;
-          rows[I].insert(rows[I].end(), J.begin(), J.end());
-        }
-        if (rows[I].size() > 512) {  // keep the lists short while they grow
-          std::sort(rows[I].begin(), rows[I].end());
-          rows[I].erase(std::unique(rows[I].begin(), rows[I].end()), rows[I].end());
-        }
-      }
-    }
+Mat VertexLevel::galerkin(const FineLevel& fine) {
+  const Stage stage(layout_.exchange->profile(), "vertex matrix");
+  values_.assign(pattern_->value_count(), 0.0);
+  fine.vertex_blocks([&](int element, const FineLevel::VertexBlock& block) {
+    double matrix[12][12];
+    double keep[12];
+    const int* vertices = &pattern_->graph().elements[4 * static_cast<std::size_t>(element)];
+    for (int k = 0; k < 12; ++k)
+      keep[k] = constrained_[3 * static_cast<std::size_t>(vertices[k / 3]) + k % 3] ? 0 : 1;
+    for (int r = 0; r < 12; ++r)
+      for (int c = 0; c < 12; ++c)
+        matrix[r][c] = keep[r] * keep[c] * static_cast<double>(block[r / 3][r % 3][c / 3][c % 3]);
+    pattern_->add(element, &matrix[0][0], values_);
   });
-  row_start_.assign(nodes_ + 1, 0);
-  for (PetscInt I = 0; I < nodes_; ++I) {
-    std::sort(rows[I].begin(), rows[I].end());
-    rows[I].erase(std::unique(rows[I].begin(), rows[I].end()), rows[I].end());
-    row_start_[I + 1] = row_start_[I] + static_cast<PetscInt>(rows[I].size());
-  }
-  build_slots(A, rows);
-  build_pattern(rows);
-}
-
-void VertexLevel::build_slots(Mat A, const std::vector<std::vector<PetscInt>>& rows) {
-  slots_.clear();
-  for_each_part(A, [&](const RowBlocks& blocks, auto column) {
-    for (PetscInt i = 0; i < local_nodes_; ++i) {
-      const auto& I = parents_[first_ + i].vertex;
-      for (PetscInt k = blocks.start[i]; k < blocks.start[i + 1]; ++k) {
-        const auto& J = parents_[column(blocks.column[k])].vertex;
-        auto& slot = slots_.emplace_back();
-        for (int s = 0; s < 4; ++s) {
-          const auto& row = rows[I[s / 2]];
-          slot[s] = static_cast<std::uint16_t>(std::lower_bound(row.begin(), row.end(), J[s % 2]) -
-                                               row.begin());
-        }
-      }
-    }
-  });
-}
-
-void VertexLevel::build_pattern(const std::vector<std::vector<PetscInt>>& rows) {
-  std::vector<std::int64_t> keys;
-  for (PetscInt I = 0; I < nodes_; ++I) {
-    for (const PetscInt J : rows[I]) keys.push_back(std::int64_t{I} * nodes_ + J);
-  }
-  block_counts_.resize(ranks_);
-  block_offsets_.assign(ranks_, 0);
-  const int mine = static_cast<int>(9 * keys.size());
-  MPI_Allgather(&mine, 1, MPI_INT, block_counts_.data(), 1, MPI_INT, comm_);
-  for (int r = 1; r < ranks_; ++r) block_offsets_[r] = block_offsets_[r - 1] + block_counts_[r - 1];
-  const std::vector<std::int64_t> all = gather_all(comm_, keys, MPI_INT64_T);
-  keys = all;
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-
-  targets_.resize(all.size());
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    targets_[k] =
-        static_cast<PetscInt>(std::lower_bound(keys.begin(), keys.end(), all[k]) - keys.begin());
-  }
-  pattern_start_.assign(nodes_ + 1, 0);
-  pattern_column_.resize(keys.size());
-  for (std::size_t k = 0; k < keys.size(); ++k) {
-    ++pattern_start_[keys[k] / nodes_ + 1];
-    pattern_column_[k] = static_cast<PetscInt>(keys[k] % nodes_);
-  }
-  for (PetscInt I = 0; I < nodes_; ++I) pattern_start_[I + 1] += pattern_start_[I];
-
-  std::vector<PetscInt> start{0}, column;
-  for (PetscInt I = 0; I < nodes_; ++I) {
-    for (int a = 0; a < 3; ++a) {
-      for (PetscInt k = pattern_start_[I]; k < pattern_start_[I + 1]; ++k) {
-        for (int b = 0; b < 3; ++b) column.push_back(3 * pattern_column_[k] + b);
-      }
-      start.push_back(static_cast<PetscInt>(column.size()));
-    }
-  }
-  check(MatCreate(PETSC_COMM_SELF, matrix_.out()));
-  check(MatSetSizes(matrix_.get(), 3 * nodes_, 3 * nodes_, 3 * nodes_, 3 * nodes_));
-  check(MatSetBlockSize(matrix_.get(), 3));
-  check(MatSetType(matrix_.get(), MATSEQAIJ));
-  check(MatSeqAIJSetPreallocationCSR(matrix_.get(), start.data(), column.data(), nullptr));
-}
-
-void VertexLevel::add_products(Mat A, std::vector<double>& products) const {
-  auto slot = slots_.begin();
-  for_each_part(A, [&](const RowBlocks& blocks, auto column) {
-    for (PetscInt i = 0; i < local_nodes_; ++i) {
-      const Parents& I = parents_[first_ + i];
-      for (PetscInt k = blocks.start[i]; k < blocks.start[i + 1]; ++k, ++slot) {
-        const Parents& J = parents_[column(blocks.column[k])];
-        const double* block = blocks.values + 9 * k;
-        for (int s = 0; s < 4; ++s) {
-          double* out = &products[9 * (row_start_[I.vertex[s / 2]] + (*slot)[s])];
-          const unsigned in_row = I.mask[s / 2], in_column = J.mask[s % 2];
-          for (int b = 0; b < 3; ++b) {
-            for (int a = 0; a < 3; ++a) {
-              const bool takes_part = (in_row >> a & 1) && (in_column >> b & 1);
-              out[3 * a + b] += takes_part ? 0.25 * block[3 * b + a] : 0.0;
-            }
-          }
-        }
-      }
-    }
-  });
-}
-
-void VertexLevel::fill(const std::vector<double>& products) {
-  std::vector<double> sum(9 * pattern_column_.size(), 0.0);
-  for (std::size_t k = 0; k < targets_.size(); ++k) {
-    for (int c = 0; c < 9; ++c) sum[9 * targets_[k] + c] += products[9 * k + c];
-  }
-  PetscScalar* values = nullptr;
-  check(MatSeqAIJGetArrayWrite(matrix_.get(), &values));
-  PetscScalar* out = values;
-  for (PetscInt I = 0; I < nodes_; ++I) {
-    for (int a = 0; a < 3; ++a) {
-      for (PetscInt k = pattern_start_[I]; k < pattern_start_[I + 1]; ++k) {
-        for (int b = 0; b < 3; ++b) *out++ = sum[9 * k + 3 * a + b];
-        if (pattern_column_[k] == I && constrained_[3 * I + a]) *(out - 3 + a) = 1;
-      }
-    }
-  }
-  check(MatSeqAIJRestoreArrayWrite(matrix_.get(), &values));
-  check(MatAssemblyBegin(matrix_.get(), MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(matrix_.get(), MAT_FINAL_ASSEMBLY));
-}
-
-Mat VertexLevel::galerkin(Mat A) {
-  if (!matrix_) build_structure(A);
-  std::vector<double> products(9 * static_cast<std::size_t>(row_start_[nodes_]), 0.0);
-  add_products(A, products);
-  if (ranks_ > 1) {
-    std::vector<double> all(9 * targets_.size());
-    MPI_Allgatherv(products.data(), static_cast<int>(products.size()), MPI_DOUBLE, all.data(),
-                   block_counts_.data(), block_offsets_.data(), MPI_DOUBLE, comm_);
-    products = std::move(all);
-  }
-  fill(products);
+  pattern_->finish(constrained_, values_);
+  pattern_->copy(values_, matrix_.get());
+  values_.clear();
+  values_.shrink_to_fit();
   return matrix_.get();
 }
 

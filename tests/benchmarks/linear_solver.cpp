@@ -26,7 +26,7 @@ double cpu() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 void run(const std::string& name, const LinearProblem& p,
          const std::function<void(LinearSettings&)>& change) {
   int rank = 0;
-  MPI_Comm_rank(p.layout.comm, &rank);
+  MPI_Comm_rank(p.mesh->local().comm, &rank);
   LinearSettings settings;
   change(settings);
   const double start = cpu();
@@ -49,7 +49,6 @@ void run(const std::string& name, const LinearProblem& p,
 }
 
 void compare_variants(const LinearProblemOptions& o) {
-  using Form = LinearSettings::Form;
   const LinearProblem p = polyslip::test::make_linear_problem(MPI_COMM_WORLD, o);
   const auto sweeps = [](int before, int after) {
     return [=](LinearSettings& s) {
@@ -58,9 +57,6 @@ void compare_variants(const LinearProblemOptions& o) {
     };
   };
   run("**default**", p, [](LinearSettings&) {});
-  run("original form", p, [](LinearSettings& s) { s.form = Form::original; });
-  run("original form, row transformation in the preconditioner", p,
-      [](LinearSettings& s) { s.form = Form::original_transformed; });
   for (const auto& [before, after] : {std::pair{1, 1}, {2, 2}, {3, 3}, {0, 2}, {0, 6}, {0, 8}}) {
     run(fmt::format("sweeps {} before, {} after", before, after), p, sweeps(before, after));
   }

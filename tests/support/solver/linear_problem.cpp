@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/quadrature.hpp"
-#include "mesh/shape_functions.hpp"
+#include "solver/exchange.hpp"
+#include "solver/point_volumes.hpp"
 
 namespace polyslip::test {
 namespace {
@@ -16,8 +16,6 @@ using core::Mat3;
 using core::Vec3;
 using solver::check;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Mat30 = Eigen::Matrix<double, 30, 30>;
-using Vec30 = Eigen::Matrix<double, 30, 1>;
 
 double uniform(std::uint64_t& state) {  // SplitMix64
   std::uint64_t z = (state += 0x9e3779b97f4a7c15u);
@@ -79,11 +77,6 @@ GrainTangent grain_tangent(const LinearProblemOptions& o, std::uint64_t& state) 
   return grain;
 }
 
-struct Element {
-  std::array<PetscInt, 10> nodes{};
-  int grain = 0;
-};
-
 /// The lattice of half cells; the six tetrahedra around a cell's diagonal (Kuhn).
 class Cube {
  public:
@@ -97,30 +90,21 @@ class Cube {
         for (int x = 0; x < cells_; ++x) {
           const auto slab = [&](int c) { return std::min(o.grains - 1, c * o.grains / cells_); };
           for (const auto& path : paths) {
-            add({2 * x, 2 * y, 2 * z}, path, slab(x) + o.grains * (slab(y) + o.grains * slab(z)));
+            add({2 * x, 2 * y, 2 * z}, path);
+            grain_.push_back(slab(x) + o.grains * (slab(y) + o.grains * slab(z)));
           }
         }
+    for (int n = 0; n < side_ * side_ * side_; ++n) mesh_.nodes.push_back(position(n));
   }
-  PetscInt node_count() const { return side_ * side_ * side_; }
-  const std::vector<Element>& elements() const { return elements_; }
-  std::array<int, 3> lattice(PetscInt node) const {
-    return {static_cast<int>(node % side_), static_cast<int>(node / side_ % side_),
-            static_cast<int>(node / side_ / side_)};
-  }
-  Vec3 position(PetscInt node) const {
-    const auto l = lattice(node);
-    return Vec3(l[0], l[1], l[2]) / (side_ - 1);
-  }
-  PetscInt node(const std::array<int, 3>& l) const {
-    return l[0] + side_ * (l[1] + PetscInt{side_} * l[2]);
-  }
-  bool constrained(PetscInt n, int dof) const {
-    const auto l = lattice(n);
-    return l[dof] == 0 || (dof > 0 && l[dof] == side_ - 1);
+  const mesh::Mesh& mesh() const { return mesh_; }
+  int grain(int element) const { return grain_[element]; }
+  Vec3 position(int node) const {
+    return Vec3(node % side_, node / side_ % side_, node / side_ / side_) / (side_ - 1);
   }
 
  private:
-  void add(std::array<int, 3> corner, const std::array<int, 3>& path, int grain) {
+  int node(const std::array<int, 3>& l) const { return l[0] + side_ * (l[1] + side_ * l[2]); }
+  void add(std::array<int, 3> corner, const std::array<int, 3>& path) {
     std::array<std::array<int, 3>, 4> c{};
     for (int i = 0; i < 4; ++i) {
       c[i] = corner;
@@ -128,200 +112,125 @@ class Cube {
     }
     const bool even = (path[1] - path[0] + 3) % 3 == 1;
     if (!even) std::swap(c[2], c[3]);
-    Element e;
-    e.grain = grain;
-    for (int i = 0; i < 4; ++i) e.nodes[i] = node(c[i]);
+    std::array<int, 10> e{};
+    for (int i = 0; i < 4; ++i) e[i] = node(c[i]);
     for (int m = 0; m < 6; ++m) {
       const auto [a, b] = mesh::tetrahedron_edges[m];
-      e.nodes[4 + m] =
-          node({(c[a][0] + c[b][0]) / 2, (c[a][1] + c[b][1]) / 2, (c[a][2] + c[b][2]) / 2});
+      e[4 + m] = node({(c[a][0] + c[b][0]) / 2, (c[a][1] + c[b][1]) / 2, (c[a][2] + c[b][2]) / 2});
     }
-    elements_.push_back(e);
+    mesh_.tetrahedra.push_back(e);
   }
 
-  int cells_;
-  PetscInt side_;
-  std::vector<Element> elements_;
+  int cells_, side_;
+  std::vector<int> grain_;
+  mesh::Mesh mesh_;
 };
 
-struct ElementMatrices {
-  Mat30 a = Mat30::Zero();
-  Vec30 b = Vec30::Zero();
-  double volume = 0;
-};
-
-ElementMatrices integrate(const Cube& cube, const Element& element, const Mat6& tangent) {
-  ElementMatrices m;
-  std::array<Vec3, 10> x;
-  for (int i = 0; i < 10; ++i) x[i] = cube.position(element.nodes[i]);
-  for (const auto& point : mesh::tet_quadrature_4()) {
-    const auto local = mesh::tet10_gradients(point.xi);
-    const Mat3 j = mesh::tet10_jacobian(x, local);
-    const double w = point.weight * j.determinant();
-    Eigen::Matrix<double, 6, 30> strain = Eigen::Matrix<double, 6, 30>::Zero();
-    for (int i = 0; i < 10; ++i) {
-      const Vec3 g = j.transpose().inverse() * local[i];
-      for (int a = 0; a < 3; ++a) {
-        Mat3 du = Mat3::Zero();
-        du.row(a) = g.transpose();
-        strain.col(3 * i + a) = mandel(0.5 * (du + du.transpose()));
-        m.b[3 * i + a] += w * g[a];
-      }
-    }
-    m.a += w * strain.transpose() * tangent * strain;
-    m.volume += w;
-  }
-  return m;
+solver::VecHandle create_vector(MPI_Comm comm, std::size_t size) {
+  solver::VecHandle v;
+  check(VecCreateMPI(comm, static_cast<PetscInt>(size), PETSC_DETERMINE, v.out()));
+  check(VecSet(v.get(), 0));
+  return v;
 }
 
-void own_nodes(LinearProblem& p, const Cube& cube, PetscInt first, PetscInt last) {
-  auto& layout = p.layout;
-  for (PetscInt n = first; n < last; ++n) {
-    auto low = cube.lattice(n), high = low;
-    bool corner = true;
-    for (int a = 0; a < 3; ++a) {
-      if (low[a] % 2 == 0) continue;
-      corner = false;
-      --low[a];
-      ++high[a];
-    }
-    layout.is_corner.push_back(corner);
-    layout.parents.push_back({cube.node(low), cube.node(high)});
-    const Vec3 x = cube.position(n);
-    for (int a = 0; a < 3; ++a) {
-      layout.coordinates.push_back(x[a]);
-      layout.constrained.push_back(cube.constrained(n, a));
-    }
-  }
+std::vector<double> to_vector(Vec v) {
+  PetscInt n = 0;
+  const PetscScalar* values = nullptr;
+  check(VecGetLocalSize(v, &n));
+  check(VecGetArrayRead(v, &values));
+  std::vector<double> out(values, values + n);
+  check(VecRestoreArrayRead(v, &values));
+  return out;
 }
 
-std::vector<std::vector<PetscInt>> neighbours(const Cube& cube) {
-  std::vector<std::vector<PetscInt>> near(cube.node_count());
-  for (const Element& e : cube.elements())
-    for (const PetscInt n : e.nodes) near[n].insert(near[n].end(), e.nodes.begin(), e.nodes.end());
-  for (auto& list : near) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return near;
-}
-
-void create_displacement_matrix(const LinearProblem& p, const Cube& cube, PetscInt first,
-                                solver::MatHandle& matrix) {
-  const auto near = neighbours(cube);
-  const PetscInt n = p.layout.local_nodes;
-  std::vector<PetscInt> own(n, 0), other(n, 0);
-  for (PetscInt i = 0; i < n; ++i) {
-    for (const PetscInt j : near[first + i]) ++(j >= first && j < first + n ? own : other)[i];
-  }
-  check(MatCreate(p.layout.comm, matrix.out()));
-  check(MatSetSizes(matrix.get(), 3 * n, 3 * n, PETSC_DETERMINE, PETSC_DETERMINE));
-  check(MatSetBlockSize(matrix.get(), 3));
-  check(MatSetType(matrix.get(), MATBAIJ));
-  check(MatSeqBAIJSetPreallocation(matrix.get(), 3, 0, own.data()));
-  check(MatMPIBAIJSetPreallocation(matrix.get(), 3, 0, own.data(), 0, other.data()));
-}
-
-void create_vectors(LinearProblem& p) {
-  const PetscInt rows = 3 * p.layout.local_nodes, pressures = p.layout.local_pressures;
-  check(VecCreateMPI(p.layout.comm, rows, PETSC_DETERMINE, p.ru.out()));
-  check(VecDuplicate(p.ru.get(), p.du.out()));
-  check(VecCreateMPI(p.layout.comm, pressures, PETSC_DETERMINE, p.rp.out()));
-  for (auto* v : {&p.dp, &p.C, &p.W, &p.schur}) check(VecDuplicate(p.rp.get(), v->out()));
-}
-
-void set(Vec v, PetscInt row, double value) {
-  check(VecSetValues(v, 1, &row, &value, INSERT_VALUES));
-}
-
-/// Adds element number `e` with its Dirichlet rows and columns taken out: the displaced z1 face
-/// (by -0.01) goes to the right side.
-void add_element(LinearProblem& p, const Cube& cube, PetscInt e, const ElementMatrices& m,
-                 double mu, double bulk, const LinearProblemOptions& o) {
-  const Element& element = cube.elements()[e];
-  const double w = std::min(o.weight * mu, bulk) / m.volume, c = m.volume / bulk;
-  Mat30 a = m.a;
-  if (!o.mixed) a += m.b * m.b.transpose() / c;
-  Vec30 lift = Vec30::Zero(), b = m.b;
-  std::array<bool, 30> fixed{};
-  for (int i = 0; i < 30; ++i) {
-    const PetscInt n = element.nodes[i / 3];
-    fixed[i] = cube.constrained(n, i % 3);
-    if (i % 3 == 2) lift[i] = fixed[i] ? -0.01 * cube.position(n)[2] : 0.0;
-  }
-  Vec30 force = -a * lift;
-  for (int i = 0; i < 30; ++i) {
-    if (!fixed[i]) continue;
-    a.row(i).setZero();
-    a.col(i).setZero();
-    b[i] = force[i] = 0;
-  }
-  const Mat30 augmented = o.mixed ? Mat30(a + w * b * b.transpose()) : a;
-  const auto add = [&](Mat matrix, const Mat30& values) {
-    const Eigen::Matrix<double, 30, 30, Eigen::RowMajor> rows = values;
-    check(MatSetValuesBlocked(matrix, 10, element.nodes.data(), 10, element.nodes.data(),
-                              rows.data(), ADD_VALUES));
-  };
-  add(p.A.get(), a);
-  add(p.A_augmented.get(), augmented);
-  std::array<PetscInt, 30> dofs{};
-  for (int i = 0; i < 30; ++i) dofs[i] = 3 * element.nodes[i / 3] + i % 3;
-  check(VecSetValues(p.ru.get(), 30, dofs.data(), force.data(), ADD_VALUES));
-  if (!o.mixed) return;
-  check(MatSetValues(p.B.get(), 1, &e, 30, dofs.data(), b.data(), INSERT_VALUES));
-  set(p.rp.get(), e, -m.b.dot(lift));
-  set(p.C.get(), e, c);
-  set(p.W.get(), e, w);
-  set(p.schur.get(), e, c + (1 - w * c) / (mu / m.volume + w));
-}
-
-void assemble(Mat m) {
-  check(MatAssemblyBegin(m, MAT_FINAL_ASSEMBLY));
-  check(MatAssemblyEnd(m, MAT_FINAL_ASSEMBLY));
-}
-
-void assemble(Vec v) {
-  check(VecAssemblyBegin(v));
-  check(VecAssemblyEnd(v));
-}
-
-void add_unit_diagonals(LinearProblem& p) {
-  solver::VecHandle unit;
-  check(VecDuplicate(p.ru.get(), unit.out()));
+void to_petsc(const std::vector<double>& from, Vec v) {
+  PetscInt n = 0;
   PetscScalar* values = nullptr;
-  check(VecGetArrayWrite(unit.get(), &values));
-  for (std::size_t i = 0; i < p.layout.constrained.size(); ++i) values[i] = p.layout.constrained[i];
-  check(VecRestoreArrayWrite(unit.get(), &values));
-  for (const Mat m : {p.A.get(), p.A_augmented.get()}) {
-    check(MatDiagonalSet(m, unit.get(), ADD_VALUES));
+  check(VecGetLocalSize(v, &n));
+  check(VecGetArrayWrite(v, &values));
+  std::copy_n(from.begin(), n, values);
+  check(VecRestoreArrayWrite(v, &values));
+}
+
+bool fixed(const double* x, int dof) { return x[dof] < 1e-9 || (dof > 0 && x[dof] > 1 - 1e-9); }
+
+/// Stress and tangent of element e's points; numbers that depend on the mesh's element alone.
+void set_points(LinearProblem& p, std::size_t e, std::uint64_t random, const Mat6& tangent,
+                const LinearProblemOptions& o) {
+  for (int q = 0; q < solver::element_points; ++q) {
+    for (int i = 0; i < 6; ++i)
+      for (int k = 0; k < 3; ++k)
+        for (int l = 0; l < 3; ++l) {
+          Mat3 h = Mat3::Zero();
+          h(k, l) = 1;
+          p.tangent[216 * e + 4 * (9 * i + 3 * k + l) + q] =
+              tangent.row(i).dot(mandel(0.5 * (h + h.transpose())));
+        }
+    double trace = 0;
+    for (int i = 0; i < 6; ++i) {
+      double& s = p.stress[24 * e + 4 * i + q];
+      s = o.stress * (uniform(random) - 0.5);
+      if (i < 3) trace += s;
+    }
+    for (int i = 0; i < 3; ++i) p.stress[24 * e + 4 * i + q] -= trace / 3;
+    p.mean_stress[4 * e + q] = o.stress * (uniform(random) - 0.5);
   }
+}
+
+solver::ElementGeometry geometry_of(const LinearProblem& p, int e) {
+  solver::ElementPositions at;
+  for (int a = 0; a < 10; ++a)
+    for (int i = 0; i < 3; ++i) at[a][i] = p.x[3 * p.mesh->local().elements[e][a] + i];
+  solver::ElementGeometry g;
+  solver::element_geometry(at, g);
+  return g;
+}
+
+void set_scalars(LinearProblem& p, int e, double mu, std::uint64_t random,
+                 const LinearProblemOptions& o) {
+  const auto g = geometry_of(p, e);
+  std::array<double, 4> ratio{};
+  for (double& r : ratio) r = 1 + 0.1 * (uniform(random) - 0.5);
+  const auto r = solver::point_volume_resistance(g, ratio.data(), p.kappa);
+  for (int q = 0; q < 4; ++q) {
+    p.reference[4 * e + q] = r.reference[q];
+    p.departure[4 * e + q] = r.s[q];
+  }
+  solver::ElementForces b;
+  solver::element_volume_gradient(g, b);
+  double squares = 0;
+  for (const auto& node : b)
+    for (double c : node) squares += c * c;
+  const double V = g.volume, w = std::min(o.weight * mu, p.bulk) / V;
+  const double D = w * std::sqrt(squares), C = V / p.bulk;
+  p.scale[e] = D;
+  p.C[e] = D * D * C;
+  p.W[e] = w / D / D;
+  p.schur[e] = D * D * (C + (1 - w * C) / (mu / V + w));
 }
 
 }  // namespace
 
 LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) {
   const Cube cube(o);
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
-  const int busy = std::max(1, ranks - o.idle_ranks);
-  const auto share = [&](PetscInt n, int r) { return n * std::min(r, busy) / busy; };
-  const PetscInt first = share(cube.node_count(), rank), last = share(cube.node_count(), rank + 1);
-  const auto elements = static_cast<PetscInt>(cube.elements().size());
-  const PetscInt first_element = share(elements, rank), last_element = share(elements, rank + 1);
-
+  const int ranks = solver::size_of(comm), busy = std::max(1, ranks - o.idle_ranks);
   LinearProblem p;
-  p.layout.comm = comm;
-  p.layout.local_nodes = last - first;
-  p.layout.local_pressures = o.mixed ? last_element - first_element : 0;
-  own_nodes(p, cube, first, last);
-  create_displacement_matrix(p, cube, first, p.A);
-  create_displacement_matrix(p, cube, first, p.A_augmented);
-  create_vectors(p);
-  if (o.mixed) {
-    check(MatCreateAIJ(comm, p.layout.local_pressures, 3 * p.layout.local_nodes, PETSC_DETERMINE,
-                       PETSC_DETERMINE, 30, nullptr, 30, nullptr, p.B.out()));
+  p.mesh = std::make_unique<solver::Distribution>(comm, cube.mesh(),
+                                                  solver::partition_elements(cube.mesh(), busy));
+  const solver::LocalMesh& local = p.mesh->local();
+  p.exchange = std::make_unique<solver::NodeExchange>(local);
+  p.layout.local = &local;
+  p.layout.exchange = p.exchange.get();
+  p.layout.mixed = o.mixed;
+  std::vector<double> lift;
+  for (int n : local.node_mesh) {
+    const Vec3 x = cube.position(n);
+    p.x.insert(p.x.end(), x.data(), x.data() + 3);
+    for (int a = 0; a < 3; ++a) p.layout.constrained.push_back(fixed(x.data(), a));
+    lift.insert(lift.end(), {0, 0, x[2] > 1 - 1e-9 ? -0.01 : 0});
   }
+  p.layout.coordinates.assign(p.x.begin(), p.x.begin() + 3 * local.owned_nodes);
+
   std::vector<GrainTangent> grains(o.grains * o.grains * o.grains);
   std::uint64_t state = o.seed;
   double mean_mu = 0;
@@ -329,42 +238,131 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
     grain = grain_tangent(o, state);
     mean_mu += grain.mu / static_cast<double>(grains.size());
   }
-  const double bulk = o.bulk_to_shear * mean_mu;
-  for (PetscInt e = first_element; e < last_element; ++e) {
-    const Element& element = cube.elements()[e];
-    const GrainTangent& grain = grains[element.grain];
-    std::uint64_t own = o.seed + 1000003u * static_cast<std::uint64_t>(e);
+  p.bulk = o.bulk_to_shear * mean_mu;
+  p.kappa = o.resistance * mean_mu;
+  const std::size_t n = local.elements.size();
+  p.stress.resize(24 * n);
+  p.tangent.resize(216 * n);
+  for (auto* v : {&p.mean_stress, &p.reference, &p.departure}) v->resize(4 * n);
+  for (auto* v : {&p.scale, &p.C, &p.W, &p.schur}) v->resize(n);
+  for (std::size_t e = 0; e < n; ++e) {
+    const int number = local.element_mesh[e];
+    const GrainTangent& grain = grains[cube.grain(number)];
+    std::uint64_t own = o.seed + 1000003u * static_cast<std::uint64_t>(number);
     const double factor = std::exp(0.6 * (uniform(own) - 0.5));
-    add_element(p, cube, e, integrate(cube, element, factor * grain.tangent), factor * grain.mu,
-                bulk, o);
+    set_points(p, e, own, factor * grain.tangent, o);
+    set_scalars(p, static_cast<int>(e), factor * grain.mu, own + 1, o);
   }
-  for (const Mat m : {p.A.get(), p.A_augmented.get()}) assemble(m);
-  if (o.mixed) assemble(p.B.get());
-  for (auto* v : {&p.ru, &p.rp, &p.C, &p.W, &p.schur}) assemble(v->get());
-  add_unit_diagonals(p);
+  p.ru = create_vector(comm, p.layout.displacements());
+  p.du = create_vector(comm, p.layout.displacements());
+  p.rp = create_vector(comm, p.layout.pressures());
+  p.dp = create_vector(comm, p.layout.pressures());
+  std::vector<double> fu, fp;
+  p.apply_plain(lift, std::vector<double>(n, 0), fu, fp);
+  for (double& f : fu) f = -f;
+  for (double& f : fp) f = -f;
+  to_petsc(fu, p.ru.get());
+  if (o.mixed) to_petsc(fp, p.rp.get());
   return p;
 }
 
+solver::LinearBlocks LinearProblem::blocks() const {
+  solver::LinearBlocks b;
+  b.x = x.data();
+  b.stress = stress.data();
+  b.tangent = tangent.data();
+  b.mean_stress = mean_stress.data();
+  if (!layout.mixed) {
+    b.bulk = bulk;
+    return b;
+  }
+  b.kappa = kappa;
+  b.reference = reference.data();
+  b.departure = departure.data();
+  b.scale = scale.data();
+  b.C = C.data();
+  b.W = W.data();
+  b.schur = schur.data();
+  return b;
+}
+
+void LinearProblem::element(int e, solver::ElementMatrix& matrix, solver::ElementForces& b) const {
+  const auto g = geometry_of(*this, e);
+  std::array<double, 4> mean{};
+  std::copy_n(&mean_stress[4 * e], 4, mean.begin());
+  solver::element_tangent(g, &stress[24 * e], &tangent[216 * e], mean, layout.mixed ? 0 : bulk,
+                          matrix);
+  solver::element_volume_gradient(g, b);
+  if (!layout.mixed || kappa == 0) return;
+  solver::PointVolumeResistance r;
+  r.kappa = kappa;
+  std::copy_n(&reference[4 * e], 4, r.reference.begin());
+  std::copy_n(&departure[4 * e], 4, r.s.begin());
+  for (int q = 0; q < 4; ++q) r.sum += r.reference[q] * r.s[q];
+  solver::add_resistance_tangent(r, g, matrix);
+}
+
+void LinearProblem::apply_plain(const std::vector<double>& u, const std::vector<double>& p,
+                                std::vector<double>& yu, std::vector<double>& yp) const {
+  const solver::LocalMesh& local = mesh->local();
+  yu.assign(u.size(), 0);
+  yp.assign(local.elements.size(), 0);
+  for (int e = 0; e < local.element_count(); ++e) {
+    solver::ElementMatrix matrix;
+    solver::ElementForces b;
+    element(e, matrix, b);
+    const auto& nodes = local.elements[e];
+    for (int a = 0; a < 10; ++a)
+      for (int i = 0; i < 3; ++i) {
+        double& y = yu[3 * nodes[a] + i];
+        for (int c = 0; c < 10; ++c)
+          for (int k = 0; k < 3; ++k) y += matrix[a][i][c][k] * u[3 * nodes[c] + k];
+        if (!layout.mixed) continue;
+        y += scale[e] * b[a][i] * p[e];
+        yp[e] += scale[e] * b[a][i] * u[3 * nodes[a] + i];
+      }
+    yp[e] -= layout.mixed ? C[e] * p[e] : 0;
+  }
+  exchange->add_ghosts(yu, 3);
+  for (std::size_t i = 0; i < yu.size(); ++i)
+    if (layout.constrained[i]) yu[i] = 0;
+}
+
 double LinearProblem::relative_residual() const {
-  solver::VecHandle r, t, s;
-  PetscReal norm = 0, scale = 0;
-  check(VecDuplicate(ru.get(), r.out()));
-  check(MatMult(A.get(), du.get(), r.get()));
-  if (B) check(MatMultTransposeAdd(B.get(), dp.get(), r.get(), r.get()));
-  check(VecAXPY(r.get(), -1, ru.get()));
-  check(VecNorm(r.get(), NORM_2, &norm));
-  check(VecNorm(ru.get(), NORM_2, &scale));
-  double worst = norm / scale;
-  if (!B) return worst;
-  check(VecDuplicate(rp.get(), s.out()));
-  check(VecDuplicate(rp.get(), t.out()));
-  check(MatMult(B.get(), du.get(), s.get()));
-  check(VecPointwiseMult(t.get(), C.get(), dp.get()));
-  check(VecAXPY(s.get(), -1, t.get()));
-  check(VecAXPY(s.get(), -1, rp.get()));
-  check(VecNorm(s.get(), NORM_2, &norm));
-  check(VecNorm(rp.get(), NORM_2, &scale));
-  return norm / scale > worst || norm != norm ? norm / scale : worst;
+  std::vector<double> u = to_vector(du.get()), p = to_vector(dp.get()), yu, yp;
+  const std::vector<double> fu = to_vector(ru.get()), fp = to_vector(rp.get());
+  u.resize(x.size());
+  exchange->update_ghosts(u, 3);
+  if (!layout.mixed) p.assign(mesh->local().elements.size(), 0);
+  apply_plain(u, p, yu, yp);
+  std::array<double, 4> s{};
+  for (std::size_t i = 0; i < fu.size(); ++i) {
+    s[0] += (fu[i] - yu[i]) * (fu[i] - yu[i]);
+    s[1] += fu[i] * fu[i];
+  }
+  for (std::size_t e = 0; e < fp.size(); ++e) {
+    s[2] += (fp[e] - yp[e]) * (fp[e] - yp[e]);
+    s[3] += fp[e] * fp[e];
+  }
+  solver::sum(mesh->local().comm, s.data(), 4);
+  const double worst = std::sqrt(s[0] / s[1]);
+  if (!layout.mixed) return worst;
+  const double other = std::sqrt(s[2] / s[3]);
+  return other > worst || other != other ? other : worst;
+}
+
+std::vector<double> LinearProblem::solution() const {
+  std::vector<double> u = to_vector(du.get());
+  u.resize(x.size());
+  std::vector<double> all = mesh->gather_nodes(u, 3);
+  if (layout.mixed) {
+    const auto p = mesh->gather_elements(to_vector(dp.get()), 1);
+    all.insert(all.end(), p.begin(), p.end());
+  }
+  const MPI_Comm comm = mesh->local().comm;
+  all.resize(solver::broadcast(comm, all.size()));
+  MPI_Bcast(all.data(), static_cast<int>(all.size()), MPI_DOUBLE, 0, comm);
+  return all;
 }
 
 }  // namespace polyslip::test
