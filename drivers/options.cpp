@@ -268,7 +268,7 @@ Options read_options(Deck& deck, Purpose purpose) {
 
 std::string deck_reference() {
   // One of each list, so that its keys are declared.
-  Deck deck = Deck::from_text("[[orientations.component]]\n", "deck.toml");
+  Deck deck = Deck::from_text("[[orientations.component]]\n[[loading.stage]]\n", "deck.toml");
   declare(deck);
   return "# The deck\n\n"
          "A deck is a TOML file. This page is generated from the program "

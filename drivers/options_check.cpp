@@ -4,6 +4,9 @@
 
 #include <filesystem>
 
+#include "drivers/options_sections.hpp"
+#include "solver/load_program.hpp"
+
 namespace polyslip::drivers {
 
 namespace {
@@ -71,16 +74,11 @@ void check_material(Deck& deck, const material::MaterialOptions& o) {
                            o.h0 > 0 && o.gs == o.g0 ? "; for no hardening set h0 = 0" : ""));
 }
 
-void check_loading(Deck& deck, const solver::LoadingOptions& o) {
-  if (!(o.min_strain_increment < o.initial_strain_increment))
-    deck.fault("loading", "min_strain_increment",
-               fmt::format("min_strain_increment = {} must be below the first step, {}",
-                           o.min_strain_increment, o.initial_strain_increment));
-}
-
 void check_strains(Deck& deck, const Options& o) {
-  const double end = o.loading.final_strain;
-  const std::string final_strain = with_place(deck, "loading", "final_strain", end);
+  const double end = solver::LoadProgram(o.loading).planned_end();
+  const std::string final_strain = end == o.loading.final_strain && o.loading.stages.empty()
+                                       ? with_place(deck, "loading", "final_strain", end)
+                                       : fmt::format("the end of the load, {:.6g}", end);
   for (const double strain : o.remeshing.at_strains)
     if (!(strain < end)) {
       deck.fault("remeshing", "at_strains",

@@ -13,4 +13,7 @@ material::MaterialOptions read_material(core::Deck& deck);
 solver::LoadingOptions read_loading(core::Deck& deck);
 solver::SolverOptions read_solver(core::Deck& deck);
 
+/// Notes what the keys of [loading] ask of each other and the deck does not give.
+void check_loading(core::Deck& deck, const solver::LoadingOptions& options);
+
 }  // namespace polyslip::drivers

@@ -24,7 +24,9 @@
 #include "results/names.hpp"
 #include "results/state_file.hpp"
 #include "results/state_series.hpp"
+#include "solver/load_program.hpp"
 #include "solver/model.hpp"
+#include "solver/snapshot_fields.hpp"
 
 namespace polyslip::drivers {
 namespace {
@@ -126,7 +128,8 @@ void Run::read_deck() {
   if (!root()) understand();
   law_ = material::make_fcc_law(options_.material);
   events_ = schedule(options_.output.at_strains, options_.remeshing.at_strains,
-                     options_.output.checkpoint_every_strain, options_.loading.final_strain);
+                     options_.output.checkpoint_every_strain,
+                     solver::LoadProgram(options_.loading).planned_end());
 }
 
 void Run::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& file) const {
@@ -233,6 +236,8 @@ void Run::remesh(const mesh::Snapshot& old) {
     remap::RemeshReport report;
     fresh = remap::remesh(old, options_.mesh, options_.remeshing, pool_, report,
                           [this](const std::string& line) { log_.warning(line); });
+    const auto load = old.history.find(solver::field::load_program);
+    if (load != old.history.end()) fresh.history.insert(*load);
     times_.add("remeshing", pool_.cpu_seconds() - workers);
     mesh::write_msh(fresh.mesh, path(results::mesh_name(fresh.mesh_number)));
     log_.info(remeshing_text(report));
@@ -257,8 +262,8 @@ void Run::step(double target) {
   on_root(comm_, [&] {
     macro_->append({record.strain, record.time, record.step_size, record.stress, record.fx_x1,
                     record.fy_y1, record.fz_z1, record.newton_iterations, record.linear_iterations,
-                    after_remeshing});
-    const double left = options_.loading.final_strain - record.strain;
+                    after_remeshing, record.load_strain, record.load_stress, record.face_forces});
+    const double left = solver::LoadProgram(options_.loading).planned_end() - record.strain;
     const double pace = (core::wall_seconds() - wall_start_) / (record.strain - strain_start_);
     log_.info(step_text(record, pace * left));
   });
@@ -274,9 +279,16 @@ void Run::reach(const Event& event) {
 
 void Run::deform() {
   strain_start_ = model_->strain();
-  while (const Event* next = next_event(events_, model_->strain())) {
-    step(next->strain);
-    if (const Event* here = event_at(events_, model_->strain())) reach(*here);
+  while (!model_->finished()) {
+    const Event* next = next_event(events_, model_->strain());
+    step(next ? next->strain : core::unbounded);
+    const Event* here = event_at(events_, model_->strain());
+    // A target of stress may end the load before its last event.
+    const Event end{model_->strain(), true, true, false, true};
+    if (model_->finished())
+      reach(here && here->final ? *here : end);
+    else if (here)
+      reach(*here);
   }
 }
 

@@ -80,11 +80,17 @@ constexpr const char* macro_text = R"(## macro.csv
 
     {}
 
-One row a step, numbers in the shortest form that reads back to the same double. Strain is
-ln(h0/h), time in s, `step_size` the strain increment of the step; sxx ... sxy the volume-average
-Cauchy stress in MPa; `fx_x1`, `fy_y1`, `fz_z1` the x, y, z forces that the surroundings exert on
-the body at its faces x1, y1, z1, from reactions, in MPa L^2; iterations of the step, cut attempts
-included; `remeshed` is 1 in the row of the first step after a remeshing.
+One row a step, numbers in the shortest form that reads back to the same double. `strain` is the
+path of the load, the accumulated magnitude of its strain, and `load_strain` that strain with its
+sign; they are the same until a stage of the load goes back. The load's strain is ln(h0/h) in
+compression and plane strain, ln(h/h0) in tension (h: the height along the axis of the load), the
+shear gamma in simple shear, the integral of sqrt(2/3 D:D) under a velocity gradient, and
+strain_rate times time under `faces`. Time in s, `step_size` the increment of the path; sxx ... sxy
+the volume-average Cauchy stress in MPa; `fx_x0` ... `fz_z1` the x, y, z forces that the surroundings
+exert on the body at its faces x0 ... z1, from reactions, in MPa L^2; iterations of the step, cut
+attempts included; `remeshed` is 1 in the row of the first step after a remeshing. `load_stress` is
+the mean normal stress along the axis, positive in the sense of the load, in simple shear the mean
+shear stress, else the von Mises stress of the mean, in MPa.
 
 ## polyslip convert
 

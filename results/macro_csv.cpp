@@ -13,9 +13,15 @@
 namespace polyslip::results {
 
 std::string macro_line(const MacroRow& r) {
-  return fmt::format("{},{},{},{},{},{},{},{},{},{}\n", r.strain, r.time, r.step_size,
-                     fmt::join(r.stress, ","), r.fx_x1, r.fy_y1, r.fz_z1, r.newton_iterations,
-                     r.linear_iterations, r.remeshed ? 1 : 0);
+  std::string line =
+      fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", r.strain, r.time, r.step_size,
+                  fmt::join(r.stress, ","), r.fx_x1, r.fy_y1, r.fz_z1, r.newton_iterations,
+                  r.linear_iterations, r.remeshed ? 1 : 0, r.load_strain, r.load_stress);
+  // Three of them have columns of their own.
+  for (std::size_t face = 0; face < 6; ++face)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (face != 2 * i + 1) line += fmt::format(",{}", r.face_forces[face][i]);
+  return line + "\n";
 }
 
 MacroCsv::MacroCsv(std::string path, long rows)

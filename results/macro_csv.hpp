@@ -10,15 +10,18 @@ namespace polyslip::results {
 
 inline const std::string macro_header =
     "strain,time,step_size,sxx,syy,szz,syz,szx,sxy,fx_x1,fy_y1,fz_z1,newton_iterations,"
-    "linear_iterations,remeshed";
+    "linear_iterations,remeshed,load_strain,load_stress,fx_x0,fy_x0,fz_x0,fy_x1,fz_x1,fx_y0,fy_y0,"
+    "fz_y0,fx_y1,fz_y1,fx_z0,fy_z0,fz_z0,fx_z1,fy_z1";
 
 /// One accepted step.
 struct MacroRow {
-  double strain = 0, time = 0, step_size = 0;  ///< at the end of the step; 1, s, 1
+  double strain = 0, time = 0, step_size = 0;  ///< path of the load and time at the end; 1, s, 1
   std::array<double, 6> stress{};              ///< xx yy zz yz zx xy, volume average, MPa
   double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;      ///< force of the surroundings on the body
   int newton_iterations = 0, linear_iterations = 0;
-  bool remeshed = false;  ///< the first step after a remeshing
+  bool remeshed = false;                    ///< the first step after a remeshing
+  double load_strain = 0, load_stress = 0;  ///< signed strain of the load, its stress; 1, MPa
+  std::array<std::array<double, 3>, 6> face_forces{};  ///< as fx_x1, of all faces x0 ... z1
 };
 
 /// Numbers in the shortest form that reads back to the same double.

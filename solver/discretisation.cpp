@@ -223,6 +223,35 @@ LinearBlocks Discretisation::linearise() {
   return blocks;
 }
 
+void Discretisation::apply_tangent(const std::vector<int>& elements, const std::vector<double>& u,
+                                   const std::vector<double>& p, std::vector<double>& forces,
+                                   std::vector<double>& volumes) const {
+  std::fill(forces.begin(), forces.end(), 0.0);
+  std::fill(volumes.begin(), volumes.end(), 0.0);
+  for (int element : elements) {
+    const auto e = static_cast<std::size_t>(element);
+    ElementGeometry geometry;
+    ElementMatrix matrix;
+    ElementForces b;
+    element_geometry(positions(element, x_), geometry);
+    element_tangent(geometry, &stress_[e * 6 * element_points], &tangent_[e * 54 * element_points],
+                    mean_stress_[e], mixed_ ? 0 : bulk_, matrix);
+    if (mixed_) add_resistance_tangent(resistance(e, geometry), geometry, matrix);
+    element_volume_gradient(geometry, b);
+    const auto& nodes = local_.elements[e];
+    for (int a = 0; a < element_nodes; ++a)
+      for (int i = 0; i < 3; ++i) {
+        double force = mixed_ ? b[a][i] * p[e] : 0;
+        for (int c = 0; c < element_nodes; ++c)
+          for (int k = 0; k < 3; ++k)
+            force += matrix[a][i][c][k] * u[3 * static_cast<std::size_t>(nodes[c]) + k];
+        forces[3 * static_cast<std::size_t>(nodes[a]) + i] += force;
+        volumes[e] += b[a][i] * u[3 * static_cast<std::size_t>(nodes[a]) + i];
+      }
+  }
+  exchange_.add_ghosts(forces, 3);
+}
+
 void Discretisation::accept(const std::vector<double>& x, const std::vector<double>& p,
                             Configuration& configuration) const {
   configuration.x = x;

@@ -47,6 +47,13 @@ class Discretisation {
   /// evaluation.
   LinearBlocks linearise();
 
+  /// Action of the tangent of these elements on displacements u [local_nodes][3] and mean stresses
+  /// p [elements], nothing eliminated: forces A u + B^T p (complete on owned nodes) and volumes B u
+  /// of the elements, unscaled; zeros elsewhere. Collective.
+  void apply_tangent(const std::vector<int>& elements, const std::vector<double>& u,
+                     const std::vector<double>& p, std::vector<double>& forces,
+                     std::vector<double>& volumes) const;
+
   /// D of an element: W |b|, which makes a volume residual the force that the augmentation makes of
   /// it, so that a linear solver's norm sees both.
   double pressure_scale(std::size_t element) const { return scale_[element]; }

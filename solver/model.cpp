@@ -7,11 +7,13 @@
 #include "core/error.hpp"
 #include "solver/discretisation.hpp"
 #include "solver/exchange.hpp"
+#include "solver/load_program.hpp"
 #include "solver/newton.hpp"
 #include "solver/partition.hpp"
 #include "solver/predictor.hpp"
 #include "solver/snapshot_fields.hpp"
 #include "solver/step_control.hpp"
+#include "solver/stress_search.hpp"
 
 namespace polyslip::solver {
 namespace {
@@ -59,7 +61,8 @@ struct Model::Impl {
   Configuration now;
   std::vector<double> displacement;  // [local_nodes][3]
   std::vector<double> element_stress, point_stress, volumes;
-  double strain = 0, time = 0;
+  double strain = 0, time = 0;  // path of the load
+  LoadProgram program;
   StepControl control;
   Predictor predictor;
   std::unique_ptr<Discretisation> discretisation;
@@ -79,6 +82,7 @@ struct Model::Impl {
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
         exchange(distribution.local()),
+        program(load),
         control(load),
         predictor(3 * distribution.local().node_global.size(),
                   distribution.local().elements.size()) {
@@ -155,7 +159,19 @@ struct Model::Impl {
     return values;
   }
 
+  /// Without a history (no such step yet, or a file without it) the load went as planned.
+  void restore_program() {
+    const auto stored = read_history(field::load_program, 4);
+    if (!stored.empty()) {
+      program.restore(stored);
+      return;
+    }
+    while (strain > 0 && program.advance(strain, false)) {
+    }
+  }
+
   void restore_history() {
+    restore_program();
     const auto size = read_history(field::step_history, 1);
     if (!size.empty()) control.restore(size);
     const auto steps = read_history(field::predictor_steps, 2);
@@ -165,9 +181,10 @@ struct Model::Impl {
                       read(field::pressure_rate, Location::element, 1), steps[0], steps[1]);
   }
 
-  /// Positions of the homogeneous motion from the current strain to `end`.
+  /// Positions of the homogeneous motion from the current path to `end`.
   std::vector<double> homogeneous(double end) const {
-    const core::Mat3 F = boundary.mean_gradient(end) * boundary.mean_gradient(strain).inverse();
+    const core::Mat3 F = boundary.mean_gradient(program.strain(end)) *
+                         boundary.mean_gradient(program.strain(strain)).inverse();
     std::vector<double> x(now.x.size());
     for (std::size_t n = 0; n < x.size(); n += 3) {
       const core::Vec3 moved = F * core::Vec3(now.x[n], now.x[n + 1], now.x[n + 2]);
@@ -182,17 +199,21 @@ struct Model::Impl {
     p = now.p;
     predictor.extrapolate(end - strain, x, p);
     const auto& local = distribution.local();
+    newton->planar().flatten(x);
+    const double load_strain = program.strain(end);
     for (std::size_t dof = 0; dof < x.size(); ++dof) {
       const std::size_t n = dof / 3;
-      if (!newton->constrained()[dof]) continue;
+      if (!newton->constrained()[dof] || newton->planar().owns(dof)) continue;
       const core::Vec3 initial(now.x[3 * n] - displacement[3 * n],
                                now.x[3 * n + 1] - displacement[3 * n + 1],
                                now.x[3 * n + 2] - displacement[3 * n + 2]);
-      x[dof] = boundary.position(local.node_faces[n], static_cast<int>(dof % 3), initial, end);
+      x[dof] =
+          boundary.position(local.node_faces[n], static_cast<int>(dof % 3), initial, load_strain);
     }
   }
 
-  void accept(const std::vector<double>& x, const std::vector<double>& p, double end) {
+  void accept(const std::vector<double>& x, const std::vector<double>& p, double end,
+              bool stress_met) {
     const double increment = end - strain;
     auto departure = homogeneous(end);
     std::vector<double> change(p.size());
@@ -206,26 +227,37 @@ struct Model::Impl {
     element_stress = discretisation->element_stress();
     point_stress = discretisation->cauchy_stress();
     volumes = discretisation->volumes();
-    time += increment / loading.strain_rate;
+    time = program.time(end);
     strain = end;
     control.accepted(increment);
+    if (!program.advance(end, stress_met)) return;
+    begin_stage();
+    skip_met_stages();
+  }
+
+  /// Another rate or direction: steps start small again, and the last ones foretell nothing.
+  void begin_stage() {
+    time = program.time(strain);
+    if (program.finished()) return;
+    control = StepControl(loading);
+    predictor = Predictor(displacement.size(), now.p.size());
+    say(fmt::format("strain {:.6g}: stage {} of the load begins", strain, program.stage() + 1));
   }
 
   /// Of the body's mean stress after the last step; 0 without one. Collective.
-  double von_mises_stress() const {
+  double von_mises_stress() const { return von_mises(mean_stress()); }
+
+  /// Of the body after the last step; zeros without one. Collective.
+  std::array<double, 6> mean_stress() const {
     std::array<double, 7> sums{};
     for (std::size_t e = 0; e < volumes.size(); ++e) {
       for (std::size_t c = 0; c < 6; ++c) sums[c] += volumes[e] * element_stress[6 * e + c];
       sums[6] += volumes[e];
     }
     sum(comm, sums.data(), 7);
-    if (!(sums[6] > 0)) return 0;
-    for (std::size_t c = 0; c < 6; ++c) sums[c] /= sums[6];
-    const double mean = (sums[0] + sums[1] + sums[2]) / 3;
-    double square = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-      square += 1.5 * (sums[c] - mean) * (sums[c] - mean) + 3 * sums[3 + c] * sums[3 + c];
-    return std::sqrt(square);
+    std::array<double, 6> mean{};
+    for (std::size_t c = 0; c < 6 && sums[6] > 0; ++c) mean[c] = sums[c] / sums[6];
+    return mean;
   }
 
   StepRecord record(double increment, const StepRecord& counters) const {
@@ -234,6 +266,8 @@ struct Model::Impl {
     r.time = time;
     r.step_size = increment;
     r.stress = discretisation->mean_stress();
+    r.load_strain = program.strain(strain);
+    r.load_stress = load_stress(loading, r.stress);
     r.face_forces = face_forces(distribution.local(), boundary, discretisation->forces());
     r.fx_x1 = r.face_forces[1][0];
     r.fy_y1 = r.face_forces[3][1];
@@ -246,25 +280,47 @@ struct Model::Impl {
     if (root && log) log(line);
   }
 
+  /// Solves a step to `end`; x and p are then the solution, unless the report says why not.
+  NewtonReport solve(double end, std::vector<double>& x, std::vector<double>& p) {
+    predict(end, x, p);
+    const double increment = end - strain;
+    const double kappa = point_volume_modulus(von_mises_stress(), increment, law.shear_modulus());
+    const NewtonProblem problem{now, program.time(end) - time, increment, kappa, end, {}};
+    return newton->solve(problem, x, p);
+  }
+
+  /// A stage whose target of stress is met already ends where it begins.
+  void skip_met_stages() {
+    const double stress = load_stress(loading, mean_stress());
+    while (const auto wanted = program.stress_target()) {
+      if (program.direction() * (stress - *wanted) < 0) return;
+      program.advance(strain, true);
+      begin_stage();
+    }
+  }
+
   StepRecord step(double target) {
-    if (!(target > strain))
+    if (!(target > strain) || program.finished())
       throw core::InternalError(fmt::format("Model::step: {} is not beyond {}", target, strain));
+    target = std::min(target, program.stage_end());
     StepRecord counters;
+    StressSearch search(program, load_stress(loading, mean_stress()));
     for (;;) {
-      const double end = control.next_end(strain, target);
+      const double end =
+          search.active() ? strain + search.increment() : control.next_end(strain, target);
       const double increment = end - strain;
       std::vector<double> x, p;
-      predict(end, x, p);
-      const double kappa = point_volume_modulus(von_mises_stress(), increment, law.shear_modulus());
-      const NewtonProblem problem{now, increment / loading.strain_rate, increment, kappa, {}};
-      const NewtonReport report = newton->solve(problem, x, p);
+      const NewtonReport report = solve(end, x, p);
       counters.newton_iterations += report.iterations;
       counters.linear_iterations += report.linear_iterations;
       if (report.converged) {
-        accept(x, p, end);
+        if (search.goes_on(increment, load_stress(loading, discretisation->mean_stress())))
+          continue;
+        accept(x, p, end, search.met());
         return record(increment, counters);
       }
       ++counters.cuts;
+      search.drop();
       const bool go_on = control.cut(increment);
       say(fmt::format("strain {:.6g}: step of {:.3g} cut: {}", strain, increment, report.reason));
       if (!go_on)
@@ -300,6 +356,7 @@ struct Model::Impl {
       out.strain = strain;
       out.time = time;
       out.history[field::step_history] = control.history();
+      out.history[field::load_program] = program.history();
       out.history[field::predictor_steps] = predictor.steps();
       out.history[field::partition_ranks] = {static_cast<double>(size_of(comm))};
     }
@@ -341,21 +398,33 @@ struct Model::Impl {
   }
 };
 
+namespace {
+
+LoadingOptions without_end(LoadingOptions loading) {
+  constexpr double far = 1e6;
+  if (loading.stages.empty()) loading.final_strain = far;
+  return loading;
+}
+
+}  // namespace
+
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              const LoadingOptions& loading, const SolverOptions& options,
              std::function<void(const std::string&)> log)
-    : Model(comm, snapshot, law, make_boundary(loading, box_size(comm, snapshot)), loading, options,
-            std::move(log)) {}
+    : impl_(std::make_unique<Impl>(comm, snapshot, law,
+                                   make_boundary(loading, box_size(comm, snapshot)), loading,
+                                   options, std::move(log))) {}
 
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
              std::function<void(const std::string&)> log)
-    : impl_(std::make_unique<Impl>(comm, snapshot, law, std::move(boundary), loading, options,
-                                   std::move(log))) {}
+    : impl_(std::make_unique<Impl>(comm, snapshot, law, std::move(boundary), without_end(loading),
+                                   options, std::move(log))) {}
 
 Model::~Model() = default;
 double Model::strain() const { return impl_->strain; }
 double Model::time() const { return impl_->time; }
+bool Model::finished() const { return impl_->program.finished(); }
 StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }

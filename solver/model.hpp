@@ -18,10 +18,12 @@ namespace polyslip::solver {
 
 /// One accepted step: a row of macro.csv.
 struct StepRecord {
-  double strain = 0, time = 0, step_size = 0;  ///< at the end of the step; 1, s, 1
+  double strain = 0, time = 0, step_size = 0;  ///< path of the load at the end of the step, time,
+                                               ///< path of the step; 1, s, 1
   std::array<double, 6> stress{};              ///< xx yy zz yz zx xy, volume average, MPa
   double fx_x1 = 0, fy_y1 = 0, fz_z1 = 0;      ///< force of the surroundings on the body, MPa L^2
   std::array<std::array<double, 3>, 6> face_forces{};  ///< all faces x0 ... z1
+  double load_strain = 0, load_stress = 0;             ///< solver/load_program.hpp; 1, MPa
   int newton_iterations = 0, linear_iterations = 0;    ///< of this step, cut attempts included
   int cuts = 0;                                        ///< attempts that failed before this one
   double min_jacobian_ratio = 1;                       ///< worst element: min det J / mean det J
@@ -36,7 +38,8 @@ class Model {
   Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
         const LoadingOptions& loading, const SolverOptions& options,
         std::function<void(const std::string&)> log);
-  /// The same under another boundary than the deck's.
+  /// The same under another boundary than the deck's, as a function of its load's strain, and
+  /// without an end.
   Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
         Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
         std::function<void(const std::string&)> log);
@@ -44,9 +47,13 @@ class Model {
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;
 
+  /// Path of the load (solver/load_program.hpp).
   double strain() const;
   double time() const;
-  /// One accepted step that does not pass `target_strain`. Throws RecoverableError, on every rank,
+  /// Whether the load has come to its end.
+  bool finished() const;
+  /// One accepted step that does not pass `target_strain` nor the end of the load's stage. Throws
+  /// core::InternalError if the load is finished, RecoverableError, on every rank,
   /// when the step falls below the smallest one; the state is then that of the last accepted step.
   StepRecord step(double target_strain);
   /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.

@@ -46,6 +46,7 @@ NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& bound
       boundary_(boundary),
       options_(options),
       constrained_(constrained_dofs(discretisation.local(), boundary)),
+      planar_(discretisation.local(), boundary),
       linear_(std::make_unique<LinearSolver>(make_layout(discretisation, constrained_, x))) {
   const LocalMesh& local = discretisation_.local();
   ru_ = create_vector(local.comm, 3 * local.owned_nodes, 3);
@@ -76,7 +77,7 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
     report.reason = "predictor: " + describe(start);
     return report;
   }
-  update_residual(problem);
+  update_residual(problem, x);
   report.balance = measure(x);
   while (!converged(report.balance, problem)) {
     if (report.iterations == options_.max_newton_iterations) {
@@ -95,10 +96,11 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
   return report;
 }
 
-void NewtonSolver::update_residual(const NewtonProblem& problem) {
+void NewtonSolver::update_residual(const NewtonProblem& problem, const std::vector<double>& x) {
   residual_ = discretisation_.forces();
   for (std::size_t i = 0; i < problem.external_forces.size(); ++i)
     residual_[i] -= problem.external_forces[i];
+  planar_residual_ = planar_.residuals(residual_, x, problem.path);
 }
 
 Balance NewtonSolver::measure(const std::vector<double>& x) const {
@@ -113,6 +115,7 @@ bool NewtonSolver::balanced(const Balance& b) const {
   for (std::size_t i = 0; i < 3; ++i)
     fine = fine && std::abs(b.resultant[i]) <= t * force &&
            std::abs(b.moment[i]) <= t * force * length_;
+  for (double r : planar_residual_) fine = fine && std::abs(r) <= t * force;
   return fine;
 }
 
@@ -122,17 +125,27 @@ bool NewtonSolver::converged(const Balance& b, const NewtonProblem& problem) con
 }
 
 bool NewtonSolver::solve_linear(NewtonReport& report) {
+  std::vector<double> forces(residual_.size()), volumes(pressure_increment_.size());
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = -residual_[i];
+  for (std::size_t e = 0; e < volumes.size(); ++e)
+    volumes[e] = -discretisation_.volumes()[e] * discretisation_.volume_gap()[e];
+  return solve_system(forces, volumes, increment_, pressure_increment_, report) &&
+         add_planar(report);
+}
+
+bool NewtonSolver::solve_system(const std::vector<double>& forces,
+                                const std::vector<double>& volumes, std::vector<double>& u,
+                                std::vector<double>& p, NewtonReport& report) {
   const LocalMesh& local = discretisation_.local();
   const auto dofs = 3 * static_cast<std::size_t>(local.owned_nodes);
   PetscScalar* array = nullptr;
   check(VecGetArrayWrite(ru_.get(), &array));
-  for (std::size_t i = 0; i < dofs; ++i) array[i] = constrained_[i] ? 0 : -residual_[i];
+  for (std::size_t i = 0; i < dofs; ++i) array[i] = constrained_[i] ? 0 : forces[i];
   check(VecRestoreArrayWrite(ru_.get(), &array));
   if (discretisation_.mixed()) {
     check(VecGetArrayWrite(rp_.get(), &array));
     for (std::size_t e = 0; e < local.elements.size(); ++e)
-      array[e] = -discretisation_.pressure_scale(e) * discretisation_.volumes()[e] *
-                 discretisation_.volume_gap()[e];
+      array[e] = discretisation_.pressure_scale(e) * volumes[e];
     check(VecRestoreArrayWrite(rp_.get(), &array));
   }
   const LinearReport linear =
@@ -145,12 +158,49 @@ bool NewtonSolver::solve_linear(NewtonReport& report) {
                                 linear.iterations, linear.relative_residual);
     return false;
   }
-  from_petsc(du_.get(), dofs, increment_);
-  discretisation_.exchange().update_ghosts(increment_, 3);
+  from_petsc(du_.get(), dofs, u);
+  discretisation_.exchange().update_ghosts(u, 3);
   if (discretisation_.mixed()) {
-    from_petsc(dp_.get(), local.elements.size(), pressure_increment_);
+    from_petsc(dp_.get(), local.elements.size(), p);
     for (std::size_t e = 0; e < local.elements.size(); ++e)
-      pressure_increment_[e] *= discretisation_.pressure_scale(e);
+      p[e] *= discretisation_.pressure_scale(e);
+  }
+  return true;
+}
+
+bool NewtonSolver::add_planar(NewtonReport& report) {
+  const std::size_t n = planar_.count();
+  if (n == 0) return true;
+  const auto& elements = planar_.elements();
+  std::vector<double> forces(increment_.size()), volumes(pressure_increment_.size());
+  const auto face_forces = [&](const std::vector<double>& u, const std::vector<double>& p) {
+    discretisation_.apply_tangent(elements, u, p, forces, volumes);
+    return planar_.sums(forces);
+  };
+  for (std::size_t dof = 0; dof < constrained_.size(); ++dof)
+    if (constrained_[dof]) increment_[dof] = 0;
+  auto right = face_forces(increment_, pressure_increment_);
+  for (std::size_t k = 0; k < n; ++k) right[k] = -planar_residual_[k] - right[k];
+  // Each face's unit motion with the body's response to it.
+  std::vector<std::vector<double>> stiffness(n, std::vector<double>(n));
+  std::vector<std::vector<double>> u(n, increment_), p(n, pressure_increment_);
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto unit = planar_.direction(k);
+    face_forces(unit, std::vector<double>(volumes.size(), 0));
+    for (double& f : forces) f = -f;
+    for (double& v : volumes) v = -v;
+    if (!solve_system(forces, volumes, u[k], p[k], report)) return false;
+    for (std::size_t dof = 0; dof < unit.size(); ++dof)
+      if (constrained_[dof]) u[k][dof] = unit[dof];
+    const auto column = face_forces(u[k], p[k]);
+    for (std::size_t row = 0; row < n; ++row) stiffness[row][k] = column[row];
+  }
+  planar_increment_ = solve_dense(stiffness, right);
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i < increment_.size(); ++i)
+      increment_[i] += planar_increment_[k] * u[k][i];
+    for (std::size_t e = 0; e < p[k].size(); ++e)
+      pressure_increment_[e] += planar_increment_[k] * p[k][e];
   }
   return true;
 }
@@ -160,7 +210,10 @@ double NewtonSolver::conjugate_residual() const {
   const auto dofs = 3 * static_cast<std::size_t>(discretisation_.local().owned_nodes);
   for (std::size_t i = 0; i < dofs; ++i)
     if (!constrained_[i]) work -= increment_[i] * residual_[i];
-  return sum(discretisation_.local().comm, work);
+  work = sum(discretisation_.local().comm, work);
+  for (std::size_t k = 0; k < planar_.count(); ++k)
+    work -= planar_increment_[k] * planar_residual_[k];
+  return work;
 }
 
 bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
@@ -168,7 +221,7 @@ bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
                                  std::vector<double>& x, std::vector<double>& p,
                                  NewtonReport& report) {
   for (std::size_t i = 0; i < x.size(); ++i)
-    x[i] = constrained_[i] ? x0[i] : x0[i] + lambda * increment_[i];
+    x[i] = constrained_[i] && !planar_.owns(i) ? x0[i] : x0[i] + lambda * increment_[i];
   for (std::size_t e = 0; e < p.size(); ++e) p[e] = p0[e] + lambda * pressure_increment_[e];
   const Evaluation outcome =
       discretisation_.evaluate(problem.old, x, p, problem.time_step, problem.kappa);
@@ -176,7 +229,7 @@ bool NewtonSolver::try_increment(const NewtonProblem& problem, double lambda,
     report.reason = describe(outcome);
     return false;
   }
-  update_residual(problem);
+  update_residual(problem, x);
   report.balance = measure(x);
   return true;
 }

@@ -10,6 +10,7 @@
 #include "solver/discretisation.hpp"
 #include "solver/linear_solver.hpp"
 #include "solver/options.hpp"
+#include "solver/planar_faces.hpp"
 #include "solver/reactions.hpp"
 
 namespace polyslip::solver {
@@ -20,6 +21,7 @@ struct NewtonProblem {
   double time_step = 0;         ///< s
   double strain_increment = 0;  ///< scale of the volume criterion
   double kappa = 0;             ///< MPa, solver/point_volumes.hpp
+  double path = 0;              ///< of the load at the end of the step, for mean tractions
   /// [local_nodes][3] forces of the surroundings on free dofs; empty: none
   std::vector<double> external_forces;
 };
@@ -37,6 +39,7 @@ struct NewtonReport {
 /// largest face force,
 ///   |r_free|_2 <= t |reactions|_2,
 ///   |sum r_free| <= t F and |sum x_i r_free_i| <= t F L for each direction (L = V^(1/3)),
+///   the same force on each planar face but for its mean traction,
 ///   rms over the volume of ln(V/V0) - p/K <= t |strain increment|,
 /// every point converged, no element inverted. Scales never fall below those of a stress of 1e-6
 /// times the shear modulus.
@@ -52,25 +55,34 @@ class NewtonSolver {
   /// Starts the linear solver anew at positions x, as a restart does. Collective.
   void drop_setup(const std::vector<double>& x);
 
+  /// Dofs that are no unknowns of their own, those of planar faces among them.
   const std::vector<std::uint8_t>& constrained() const { return constrained_; }
+  const PlanarFaces& planar() const { return planar_; }
 
  private:
   Discretisation& discretisation_;
   const Boundary& boundary_;
   SolverOptions options_;
   std::vector<std::uint8_t> constrained_;
+  PlanarFaces planar_;
   std::unique_ptr<LinearSolver> linear_;
   VecHandle ru_, rp_, du_, dp_;
   std::vector<double> residual_;  // [local_nodes][3] internal - external
   std::vector<double> increment_, pressure_increment_;
+  std::vector<double> planar_residual_, planar_increment_;  // of each planar face
   double length_ = 0, floor_force_ = 0;
 
-  void update_residual(const NewtonProblem& problem);
+  void update_residual(const NewtonProblem& problem, const std::vector<double>& x);
   Balance measure(const std::vector<double>& x) const;
   /// The criteria on forces alone.
   bool balanced(const Balance& balance) const;
   bool converged(const Balance& balance, const NewtonProblem& problem) const;
   bool solve_linear(NewtonReport& report);
+  /// Solves for increments with these right sides: forces on free dofs, volumes of elements.
+  bool solve_system(const std::vector<double>& forces, const std::vector<double>& volumes,
+                    std::vector<double>& u, std::vector<double>& p, NewtonReport& report);
+  /// Adds to the increment what the planar faces' own unknowns do.
+  bool add_planar(NewtonReport& report);
   double conjugate_residual() const;
   /// Evaluates x0 + lambda * increment; false, with the reason, if that cannot be done.
   bool try_increment(const NewtonProblem& problem, double lambda, const std::vector<double>& x0,

@@ -24,6 +24,7 @@ inline const std::string previous_rate = "solver_previous_rate";
 inline const std::string pressure_rate = "solver_pressure_rate";
 inline const std::string step_history = "solver_step";                // StepControl::history
 inline const std::string predictor_steps = "solver_predictor_steps";  // Predictor::steps
+inline const std::string load_program = "load_program";               // LoadProgram::history
 inline const std::string partition_ranks = "solver_partition_ranks";  // {ranks}
 }  // namespace field
 

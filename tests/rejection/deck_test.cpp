@@ -107,7 +107,47 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:4:9: [orientations.component 1] a plane and a direction must not be zero or "
      "parallel"},
     {"LoadingUnknown", "[loading]\ntype = \"tension\"\n",
-     "deck.toml:2:8: [loading] type = \"tension\" must be \"plane-strain-compression\""},
+     "deck.toml:2:8: [loading] type = \"tension\" must be \"plane-strain-compression\", "
+     "\"uniaxial-tension\", \"uniaxial-compression\", \"simple-shear\", \"velocity-gradient\" or "
+     "\"faces\""},
+    {"AxisTwice", "[loading]\nconstrained_axis = \"z\"\n",
+     "deck.toml:2:20: [loading] constrained_axis must differ from axis"},
+    {"ShearAlongItsNormal", "[loading]\ntype = \"simple-shear\"\ndirection = \"z\"\n",
+     "deck.toml:3:13: [loading] direction must differ from axis"},
+    {"KeyOfAnotherLoad", "[loading]\ntype = \"uniaxial-tension\"\nx0 = \"fixed\"\n",
+     "deck.toml:3:6: [loading] x0 is not used with type = \"uniaxial-tension\"; remove it"},
+    {"GradientWithTrace",
+     "[loading]\ntype = \"velocity-gradient\"\nvelocity_gradient = [1, 0, 0, 0, 0, 0, 0, 0, 0]\n",
+     "deck.toml:3:21: [loading] velocity_gradient has the trace 1, must be 0: plastic flow keeps "
+     "volumes"},
+    {"RotationOnly",
+     "[loading]\ntype = \"velocity-gradient\"\nvelocity_gradient = [0, 1, 0, -1, 0, 0, 0, 0, 0]\n",
+     "deck.toml:3:21: [loading] velocity_gradient strains nothing: D = 0"},
+    {"NothingMoves", "[loading]\ntype = \"faces\"\nz0 = \"fixed\"\n",
+     "deck.toml:2:8: [loading] type = \"faces\": no face has a velocity or a traction"},
+    {"NothingHolds",
+     "[loading]\ntype = \"faces\"\nz0 = \"sliding\"\nz1 = \"sliding\"\nz1_velocity = [0, 0, 1]\n",
+     "deck.toml:2:8: [loading] type = \"faces\": nothing holds the box along x; fix a face or hold "
+     "a corner"},
+    {"SlidingSideways",
+     "[loading]\ntype = \"faces\"\nz0 = \"fixed\"\nz1 = \"sliding\"\nz1_velocity = [1, 0, 0]\n",
+     "deck.toml:5:15: [loading] z1_velocity: a sliding face has a normal velocity only; set z1 = "
+     "\"moving\""},
+    {"NoCorner",
+     "[loading]\ntype = \"faces\"\nheld = [\"x0y0:x\"]\nz0 = \"fixed\"\nz1 = \"sliding\"\n"
+     "z1_velocity = [0, 0, 1]\n",
+     "deck.toml:3:8: [loading] held: \"x0y0:x\" must name a corner and directions, such as "
+     "\"x0y0z0:xy\""},
+    {"StageWithoutTarget", "[[loading.stage]]\nstrain_rate = 2\n",
+     "deck.toml:1:1: [loading.stage 1] a stage needs a target: strain, time or stress"},
+    {"StageKeyUnknown", "[[loading.stage]]\nstrian = 0.1\n",
+     "deck.toml:2:1: [loading.stage 1] unknown key 'strian'; did you mean 'strain'?"},
+    {"StagesAndFinalStrain", "[loading]\nfinal_strain = 1\n[[loading.stage]]\nstrain = 0.1\n",
+     "deck.toml:2:16: [loading] final_strain is not used with [[loading.stage]]; remove it"},
+    {"StageAgainstItsRate", "[[loading.stage]]\nstrain = 0.1\nstrain_rate = -1\n",
+     "deck.toml:2:10: [loading.stage 1] strain = 0.1 lies ahead of 0, but strain_rate is negative"},
+    {"StageBackInTime", "[[loading.stage]]\ntime = 0.1\n[[loading.stage]]\ntime = 0.05\n",
+     "deck.toml:4:8: [loading.stage 2] time = 0.05 must be > 0.1, the end of the stage before"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Wrong, Deck, ::testing::ValuesIn(wrong_decks),

@@ -67,7 +67,7 @@ std::vector<MacroRow> read_macro(const fs::path& run) {
     std::istringstream cells(line);
     std::vector<double> v;
     for (std::string cell; std::getline(cells, cell, ',');) v.push_back(std::stod(cell));
-    if (v.size() != 15u || line.back() == ',') {
+    if (v.size() != 32u || line.back() == ',') {
       ADD_FAILURE() << run / "macro.csv"
                     << ": '" << line << "'";
       return rows;

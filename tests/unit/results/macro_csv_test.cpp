@@ -24,6 +24,11 @@ results::MacroRow row(double strain) {
   r.newton_iterations = 7;
   r.linear_iterations = 80;
   r.remeshed = true;
+  r.load_strain = -0.5;
+  r.load_stress = 30;
+  for (std::size_t face = 0; face < 6; ++face)
+    for (std::size_t i = 0; i < 3; ++i)
+      r.face_forces[face][i] = 10.0 * static_cast<double>(face + 1) + static_cast<double>(i + 1);
   return r;
 }
 
@@ -33,8 +38,12 @@ TEST(MacroCsv, HeaderAndNumbersAsPromised) {
   csv.append(row(0.02));
   EXPECT_EQ(tests::slurp(folder / "macro.csv"),
             "strain,time,step_size,sxx,syy,szz,syz,szx,sxy,fx_x1,fy_y1,fz_z1,newton_iterations,"
-            "linear_iterations,remeshed\n"
-            "0.02,0.3333333333333333,1e-300,0.1,-0,-31.25,1,2,3,4,5,-6.5,7,80,1\n");
+            "linear_iterations,remeshed,load_strain,load_stress,fx_x0,fy_x0,fz_x0,fy_x1,fz_x1,fx_"
+            "y0,fy_y0,"
+            "fz_y0,fx_y1,fz_y1,fx_z0,fy_z0,fz_z0,fx_z1,fy_z1\n"
+            "0.02,0.3333333333333333,1e-300,0.1,-0,-31.25,1,2,3,4,5,-6.5,7,80,1,-0.5,30,11,12,13,"
+            "22,23,31,32,33,41,43,51,52,53,"
+            "61,62\n");
   EXPECT_EQ(std::strtod("0.3333333333333333", nullptr), 1.0 / 3);
 }
 
