@@ -410,9 +410,14 @@ int BoundaryMesher::number_of(int edge, int node, const BoundaryNumbers& numbers
 std::vector<int> BoundaryMesher::update() {
   std::vector<char> changed(faces_.size(), false);
   constexpr int rounds = 16;  // each forbids more pairs of nodes, or copies a face
-  constexpr int cuts = 3;
+  constexpr int cuts = 10;
   mesh_faces(changed);
-  for (int i = 0; i < cuts && cut_under_flat_triangles(changed); ++i) mesh_faces(changed);
+  auto meshed = changed;
+  for (int i = 0; i < cuts && cut_under_flat_triangles(meshed); ++i) {
+    std::fill(meshed.begin(), meshed.end(), false);
+    mesh_faces(meshed);
+    for (std::size_t f = 0; f < changed.size(); ++f) changed[f] |= meshed[f];
+  }
   for (int i = 0; forbid_shared_edges(); ++i) {
     if (i == rounds) {
       const auto stale = std::find(face_stale_.begin(), face_stale_.end(), true);

@@ -110,6 +110,12 @@ class BoundaryMesher {
   /// Puts nodes under the apices of triangles that are flat over a 1D element (P.30); whether there
   /// were any. Their edges are stale then.
   bool cut_under_flat_triangles(const std::vector<char>& faces);
+  struct EdgePlace {
+    int edge = -1;
+    double arc = 0;
+  };
+  EdgePlace under_flat_triangle(int face, const std::vector<core::Vec3>& x,
+                                const BoundaryNumbers& numbers) const;
   void cut_edge(int edge, double arc);
   void mesh_edges();
   /// Nodes by the sizes at the edge's ends, `least_count` elements or more.

@@ -98,44 +98,54 @@ std::vector<std::array<int, 2>> BoundaryMesher::loop_elements(int face) const {
 }
 
 void BoundaryMesher::cut_edge(int edge, double arc) {
-  const auto& arcs = edges_[edge].arcs;
-  const auto graded = graded_arcs(edge, static_cast<int>(arcs.size()));
-  if (graded.size() != arcs.size() + 1) return;
-  cut_arcs_[edge] = with_node_at(arcs, arc, graded, options_.progression_factor);
+  cut_arcs_[edge] = with_node_at(
+      edges_[edge].arcs, arc,
+      {end_sizes_[edge][0], end_sizes_[edge][1], sizes_.edges[edge], options_.progression_factor});
   edge_stale_[edge] = true;
+}
+
+/// The 1D element of a face and the arc length on its edge that lie under the apex of a triangle
+/// that is flat over it: of the first such triangle whose edge is not stale; edge -1: there is
+/// none.
+BoundaryMesher::EdgePlace BoundaryMesher::under_flat_triangle(
+    int face, const std::vector<Vec3>& x, const BoundaryNumbers& numbers) const {
+  const auto loop = loop_elements(face);
+  const auto nodes = face_nodes(face, numbers);
+  const int n = static_cast<int>(loop.size());
+  const auto at = [&](int local) -> Vec3 {
+    if (local < n) return x[nodes[local]].cwiseProduct(scale_);
+    return faces_[face].inner_nodes[local - n].cwiseProduct(scale_);
+  };
+  for (const auto& t : faces_[face].triangles)
+    for (int k = 0; k < 3; ++k) {
+      const int a = t[k], b = t[(k + 1) % 3];
+      if (a >= n || b != (a + 1) % n) continue;
+      const auto [edge, element] = loop[a];
+      if (edge_stale_[edge] || edge_copied_[edge]) continue;
+      const Vec3 base = at(b) - at(a), side = at(t[(k + 2) % 3]) - at(a);
+      const double foot = side.dot(base) / base.squaredNorm();
+      const double height = side.cross(base).norm() / base.squaredNorm();
+      if (!(height < flat_height * std::min(foot, 1 - foot))) continue;
+      const auto& arcs = edges_[edge].arcs;
+      const bool forward = nodes[a] == number_of(edge, element, numbers);
+      const double share = forward ? foot : 1 - foot;
+      return {edge, (1 - share) * arcs[element] + share * arcs[element + 1]};
+    }
+  return {};
 }
 
 bool BoundaryMesher::cut_under_flat_triangles(const std::vector<char>& faces) {
   const auto numbers_now = numbers();
   const auto x = positions(numbers_now);
   bool any = false;
+  // One a face and round: two nodes that face each other must not both move to where the other was.
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const int f = static_cast<int>(i);
     if (!faces[i] || face_copied_[f]) continue;
-    const auto loop = loop_elements(f);
-    const auto nodes = face_nodes(f, numbers_now);
-    const int n = static_cast<int>(loop.size());
-    const auto at = [&](int local) -> Vec3 {
-      if (local < n) return x[nodes[local]].cwiseProduct(scale_);
-      return faces_[f].inner_nodes[local - n].cwiseProduct(scale_);
-    };
-    for (const auto& t : faces_[f].triangles)
-      for (int k = 0; k < 3; ++k) {
-        const int a = t[k], b = t[(k + 1) % 3];
-        if (a >= n || b != (a + 1) % n) continue;
-        const Vec3 base = at(b) - at(a), side = at(t[(k + 2) % 3]) - at(a);
-        const double foot = side.dot(base) / base.squaredNorm();
-        const double height = side.cross(base).norm() / base.squaredNorm();
-        const auto [edge, element] = loop[a];
-        if (!(height < flat_height * std::min(foot, 1 - foot)) || edge_stale_[edge] ||
-            edge_copied_[edge])
-          continue;
-        const auto& arcs = edges_[edge].arcs;
-        const bool forward = nodes[a] == number_of(edge, element, numbers_now);
-        const double share = forward ? foot : 1 - foot;
-        cut_edge(edge, (1 - share) * arcs[element] + share * arcs[element + 1]);
-        any |= edge_stale_[edge] != 0;
-      }
+    const auto place = under_flat_triangle(f, x, numbers_now);
+    if (place.edge < 0) continue;
+    cut_edge(place.edge, place.arc);
+    any = true;
   }
   return any;
 }

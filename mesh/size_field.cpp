@@ -194,17 +194,57 @@ double largest_progression(const std::vector<double>& arcs) {
   return worst;
 }
 
+namespace {
+
+/// The two parts of an edge, divided at `arc`, graded from size s there; empty if that takes many
+/// more elements.
+std::vector<double> graded_in_two(double length, double arc, double s, const EdgeGrading& g,
+                                  std::size_t most) {
+  auto nodes = edge_nodes(arc, g.from, s, g.element_size, g.progression_factor);
+  const auto right = edge_nodes(length - arc, s, g.to, g.element_size, g.progression_factor);
+  if (nodes.size() + right.size() > most) return {};
+  for (std::size_t i = 1; i + 1 < right.size(); ++i) nodes.push_back(arc + right[i]);
+  nodes.push_back(length);
+  return nodes;
+}
+
+}  // namespace
+
 std::vector<double> with_node_at(const std::vector<double>& arcs, double arc,
-                                 const std::vector<double>& graded, double progression_factor) {
-  constexpr int steps = 8;
-  std::vector<double> wanted = arcs;
-  wanted.insert(std::upper_bound(wanted.begin(), wanted.end(), arc), arc);
-  for (int step = 0; step < steps; ++step) {
-    std::vector<double> mixed = graded;
-    const double share = static_cast<double>(step) / steps;
-    for (std::size_t i = 1; i + 1 < mixed.size(); ++i)
-      mixed[i] = share * graded[i] + (1 - share) * wanted[i];
-    if (largest_progression(mixed) <= progression_factor) return mixed;
+                                 const EdgeGrading& grading) {
+  constexpr double near = 0.35;  // share of the element
+  constexpr double finer = 0.7;
+  constexpr int gradings = 5, mixtures = 8;
+  const double p = grading.progression_factor;
+  const auto fits = [p](const std::vector<double>& s) {
+    return !s.empty() && largest_progression(s) <= p * (1 + 1e-9);
+  };
+  const auto above = std::upper_bound(arcs.begin(), arcs.end(), arc);
+  if (above == arcs.begin() || above == arcs.end()) return arcs;
+  auto nearer = static_cast<std::size_t>(above - arcs.begin());
+  const double share = (arc - arcs[nearer - 1]) / (arcs[nearer] - arcs[nearer - 1]);
+  if (share < 0.5) --nearer;
+  auto moved = arcs;
+  if (nearer > 0 && nearer + 1 < arcs.size()) moved[nearer] = arc;
+  const bool can_move = moved != arcs;
+  if (can_move && std::min(share, 1 - share) < near && fits(moved)) return moved;
+  auto wanted = arcs;
+  wanted.insert(wanted.begin() + (above - arcs.begin()), arc);
+  if (fits(wanted)) return wanted;
+  if (can_move && fits(moved)) return moved;
+  double s = std::min({grading.element_size, arc, arcs.back() - arc});
+  for (int i = 0; i < gradings; ++i, s *= finer) {
+    auto nodes = graded_in_two(arcs.back(), arc, s, grading, 2 * arcs.size() + 4);
+    if (fits(nodes)) return nodes;
+  }
+  const auto graded = edge_nodes(arcs.back(), grading.from, grading.to, grading.element_size, p,
+                                 static_cast<int>(arcs.size()));
+  for (int i = 1; i < mixtures && graded.size() == wanted.size(); ++i) {
+    auto mixed = graded;
+    const double part = static_cast<double>(i) / mixtures;
+    for (std::size_t k = 1; k + 1 < mixed.size(); ++k)
+      mixed[k] = part * graded[k] + (1 - part) * wanted[k];
+    if (fits(mixed)) return mixed;
   }
   return graded;
 }

@@ -51,10 +51,16 @@ std::vector<double> edge_nodes(double length, double from, double to, double ele
 /// Largest ratio of the lengths of adjacent elements; infinite if nodes are out of order.
 double largest_progression(const std::vector<double>& arcs);
 
-/// Puts a node at `arc` into an edge whose nodes are at `arcs`. If adjacent lengths would then
-/// differ by more than p_l, all nodes go as far towards `graded`, nodes of an edge with as many
-/// elements that keeps p_l, as it takes.
+/// What the nodes of an edge are graded by: see edge_nodes.
+struct EdgeGrading {
+  double from = 0, to = 0, element_size = 0, progression_factor = 2;
+};
+
+/// Gives an edge, whose nodes are at `arcs`, a node at `arc`, so that adjacent lengths differ by no
+/// more than p_l: by the first of these that does: its near node moved there, if it is near; one
+/// put in; the near one moved from further; both parts graded anew, finer and finer at the node.
+/// Otherwise an even grading with one element more, as far from it towards the node as can be.
 std::vector<double> with_node_at(const std::vector<double>& arcs, double arc,
-                                 const std::vector<double>& graded, double progression_factor);
+                                 const EdgeGrading& grading);
 
 }  // namespace polyslip::mesh

@@ -30,13 +30,23 @@ TEST(EdgeNodes, AreAsManyAsAskedFor) {
   EXPECT_EQ(edge_nodes(0.3, 0.25, 0.25, 0.25, 2, 5).size(), 6u);
 }
 
-TEST(NodesPutIn, StayWhereTheyAreAskedForOrGoAsFarAsTheProgressionNeeds) {
-  const std::vector<double> arcs{0, 1}, graded{0, 0.5, 1};
-  EXPECT_EQ(with_node_at(arcs, 0.4, graded, 2)[1], 0.4);
-  const auto moved = with_node_at(arcs, 0.1, graded, 2);
-  ASSERT_EQ(moved.size(), 3u);
-  EXPECT_LE(largest_progression(moved), 2);
-  EXPECT_NEAR(moved[1], 1.0 / 3, 0.05);
+TEST(NodesPutIn, AreWhereTheyAreAskedForWhereTheProgressionLetsThem) {
+  const EdgeGrading grading{0.5, 0.5, 0.5, 2};
+  const std::vector<double> one{0, 1};
+  EXPECT_EQ(with_node_at(one, 0.4, grading), (std::vector<double>{0, 0.4, 1}));
+  // Near a node: that one moves.
+  EXPECT_EQ(with_node_at({0, 0.5, 1}, 0.45, grading), (std::vector<double>{0, 0.45, 1}));
+  core::Random random(5, core::Stream::tests);
+  for (int i = 0; i < 500; ++i) {
+    const double length = random.uniform(0.2, 3), p = random.uniform(1.3, 3);
+    const EdgeGrading g{random.uniform(0.1, 0.5), random.uniform(0.1, 0.5), 0.5, p};
+    const auto arcs = edge_nodes(length, g.from, g.to, 0.5, p);
+    const double arc = random.uniform(0.2, 0.8) * length;
+    const auto s = with_node_at(arcs, arc, g);
+    EXPECT_LE(largest_progression(s), p * (1 + 1e-8));
+    EXPECT_EQ(s.front(), 0);
+    EXPECT_EQ(s.back(), length);
+  }
   EXPECT_TRUE(std::isinf(largest_progression({0, 0.5, 0.4, 1})));
   EXPECT_TRUE(std::isinf(largest_progression({0, std::nan(""), 1})));
 }
