@@ -1,6 +1,7 @@
 #include "drivers/generate.hpp"
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "drivers/orientations.hpp"
 #include "mesh/tessellation.hpp"
 #include "results/names.hpp"
@@ -117,13 +118,13 @@ mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std:
   const auto measure = times.measure("meshing");
   const double workers = pool.cpu_seconds();
   mesh::MeshingReport report;
-  mesh::Mesh mesh =
-      mesh::mesh_geometry(mesh::geometry_of(tessellation), options.mesh, core::Vec3::Ones(), pool,
-                          report, [&log](double done) { log.progress("meshing", done, 1); });
+  mesh::Mesh mesh = mesh::mesh_geometry(
+      mesh::geometry_of(tessellation), options.mesh, core::Vec3::Ones(), pool, report,
+      [&log](const std::string& stage, double done) { log.progress(stage, done, 1); });
   times.add("meshing", pool.cpu_seconds() - workers);
   for (const std::string& fault : report.faults) log.warning(fault);
   log_meshing(mesh, report, options.mesh.meshers, log);
-  mesh::check(mesh);
+  mesh::check(mesh, core::thread_count(options.mesh.jobs));
   mesh::write_msh(mesh, results::in_folder(folder, results::mesh_name(0)));
   return mesh;
 }

@@ -22,8 +22,10 @@ GrainSurface grain_surface(const Topology& topology, const BoundaryMesher& bound
                            int grain, const core::Vec3& scale);
 
 /// Nodes: vertices, edges, faces, insides of grains; then, for order 2, mid nodes of lines, faces,
-/// grains. `volumes`: [grains], in the scaled frame, first nodes those of grain_surface.
+/// grains. `volumes`: [grains], in the scaled frame, first nodes those of grain_surface; given up
+/// grain by grain. InternalError if two edges of a grain's surface join the same nodes,
+/// RecoverableError if there are more nodes than 32 bits can number.
 Mesh assemble(const Geometry& geometry, const BoundaryMesher& boundary,
-              const std::vector<VolumeMesh>& volumes, const core::Vec3& scale, int order);
+              std::vector<VolumeMesh>&& volumes, const core::Vec3& scale, int order, int threads);
 
 }  // namespace polyslip::mesh

@@ -15,6 +15,6 @@ double least_jacobian_ratio(const Mesh& mesh, int element);
 /// helps most first, again and again.
 /// Throws RecoverableError, naming element and grain, if an element with a curved edge stays unfit
 /// when its edges are straight. Returns the number of mid nodes of surfaces moved.
-int mend_curved_elements(Mesh& mesh);
+int mend_curved_elements(Mesh& mesh, int threads = 1);
 
 }  // namespace polyslip::mesh

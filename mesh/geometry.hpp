@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/timer.hpp"
 #include "core/types.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/tessellation.hpp"
@@ -64,7 +65,12 @@ struct MeshingReport {
   int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                ///< mean over grains of eq. (5)
   double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
+  core::StageTimes times;  ///< of this process: "faces", "grains" (without the meshers), "sliding",
+                           ///< "assembly"
 };
+
+/// How far a stage ("meshing faces", "meshing grains", "sliding nodes", "assembling") is, 0 ... 1.
+using MeshingProgress = std::function<void(const std::string& stage, double fraction)>;
 
 /// What had to be given up of the surfaces, in one line: mid nodes pulled in, nodes put on a
 /// nearest point, faces copied. Empty if nothing.
@@ -75,7 +81,6 @@ std::string repairs_text(const MeshingReport& report);
 /// Same input, same mesh, for any number of workers. Throws RecoverableError if a face or a grain
 /// cannot be meshed, naming it; InternalError if the first mesh does not fill the domain to 1e-12.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
-                   MesherPool& pool, MeshingReport& report,
-                   const std::function<void(double fraction)>& progress = {});
+                   MesherPool& pool, MeshingReport& report, const MeshingProgress& progress = {});
 
 }  // namespace polyslip::mesh

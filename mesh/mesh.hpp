@@ -40,10 +40,10 @@ struct Mesh {
 /// tetrahedra, each facet between two grains or on the domain boundary is exactly one triangle of
 /// the right face (node for node, mid nodes too), every node is used, det J > 0 at every point of
 /// the 4- and 15-point quadrature rules, tags are in range and sorted.
-void check(const Mesh& mesh);
+void check(const Mesh& mesh, int threads = 1);
 
 /// Volume of each grain: quadratic elements integrated exactly.
-std::vector<double> grain_volumes(const Mesh& mesh);
+std::vector<double> grain_volumes(const Mesh& mesh, int threads = 1);
 
 /// Volume of one element (exact for curved elements).
 double element_volume(const Mesh& mesh, int element);

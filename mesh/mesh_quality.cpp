@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/minimum.hpp"
 #include "mesh/quadrature.hpp"
@@ -48,11 +49,15 @@ double element_volume(const Mesh& mesh, int element) {
   return element_volume(mesh, element, VolumeRule{});
 }
 
-std::vector<double> grain_volumes(const Mesh& mesh) {
+std::vector<double> grain_volumes(const Mesh& mesh, int threads) {
   const VolumeRule rule;
   std::vector<double> volumes(mesh.topology.cell_count(), 0.0);
-  for (int e = 0; e < mesh.element_count(); ++e)
-    volumes[mesh.tetrahedron_cell[e]] += element_volume(mesh, e, rule);
+  const auto& cells = mesh.tetrahedron_cell;
+  core::parallel_for(threads, volumes.size(), [&](std::size_t g) {
+    const auto [first, last] = std::equal_range(cells.begin(), cells.end(), static_cast<int>(g));
+    for (auto at = first; at != last; ++at)
+      volumes[g] += element_volume(mesh, static_cast<int>(at - cells.begin()), rule);
+  });
   return volumes;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <list>
+#include <memory>
 #include <thread>
 #include <tuple>
 
@@ -22,6 +23,10 @@ namespace {
 /// to keep the jobs busy. Fixed, so that no state of the libraries can make the number of jobs
 /// show.
 constexpr std::size_t batch_size = 25;
+
+/// Batches that may be on their way, so that one that waits for a hanging mesher does not hold up
+/// the others, and what is known of grains stays little.
+constexpr std::size_t most_batches = 400;
 
 constexpr double radius_ratio_floor = 0.2;
 constexpr double radius_ratio_step = 0.02;
@@ -80,33 +85,73 @@ std::string surface_fault(const SurfaceMesh& surface) {
   return {};
 }
 
-std::vector<GrainResult> collect(const std::vector<GrainRequest>& requests,
-                                 const PoolOptions& options, std::vector<Candidates>& candidates) {
-  std::vector<GrainResult> results(requests.size());
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    GrainResult& result = results[i];
-    Candidates& from = candidates[i];
-    result.grain = requests[i].grain;
-    for (auto& fault : from.faults)
-      if (!fault.empty()) result.faults.push_back(std::move(fault));
-    result.ok = from.any;
-    if (!from.any) continue;
-    result.mesh = std::move(from.mesh);
-    result.mesher = options.meshers[from.mesher];
-    result.O = from.O;
-  }
-  return results;
+/// Grains on their way to one mesher.
+struct Batch {
+  std::vector<std::size_t> places;     // among all requests
+  std::vector<GrainRequest> requests;  // [places]
+  std::vector<Candidates> candidates;  // [places]
+  std::unique_ptr<MesherTask> task;    // none: not started
+
+  bool finished() const { return task && task->finished(); }
+};
+
+GrainResult result_of(const GrainRequest& request, Candidates& from, const PoolOptions& options) {
+  GrainResult result;
+  result.grain = request.grain;
+  for (auto& fault : from.faults)
+    if (!fault.empty()) result.faults.push_back(std::move(fault));
+  result.ok = from.any;
+  if (!from.any) return result;
+  result.mesh = std::move(from.mesh);
+  result.mesher = options.meshers[from.mesher];
+  result.O = from.O;
+  return result;
 }
 
 }  // namespace
 
+/// The way of all grains through the meshers, one after the other: each mesher has a line of
+/// batches, and grains leave the first of them for the next line in their order, whichever batch is
+/// meshed first. So what is in a batch depends on nothing but the requests.
+class MesherPool::Stream {
+ public:
+  Stream(Impl& pool, std::size_t count, const RequestSource& source, const ResultSink& sink,
+         const PoolOptions& options)
+      : pool_(pool),
+        count_(count),
+        source_(source),
+        sink_(sink),
+        options_(options),
+        lines_(options.meshers.size()),
+        gathering_(options.meshers.size()) {}
+
+  void run();
+
+ private:
+  std::size_t batches() const;
+  void refill();
+  bool read_batch();
+  void close_batch(std::size_t mesher);
+  Batch* start_next();
+  void start(Batch& batch, std::size_t mesher);
+  void pass_on();
+  void pass_on(std::size_t mesher, Batch& batch);
+
+  Impl& pool_;
+  std::size_t count_, asked_ = 0;
+  const RequestSource& source_;
+  const ResultSink& sink_;
+  const PoolOptions& options_;
+  std::vector<std::list<Batch>> lines_;  // [meshers]
+  std::vector<Batch> gathering_;         // [meshers] the last of the line, not yet full
+  std::list<MesherTask*> running_;
+};
+
 struct MesherPool::Impl {
   explicit Impl(const std::string& executable) : spawner(executable) {}
 
-  /// Runs the tasks, `jobs` at a time, in their order.
-  void run(std::list<MesherTask>& tasks, std::size_t jobs);
-  void wait(std::list<MesherTask*>& running);
-  void take_reports(std::list<MesherTask*>& running);
+  void wait(const std::list<MesherTask*>& running);
+  void take_reports(const std::list<MesherTask*>& running);
   void take_report(const protocol::ControlMessage& message, MesherTask& task);
 
   Spawner spawner;
@@ -114,26 +159,123 @@ struct MesherPool::Impl {
   double cpu_seconds = 0;
 };
 
-void MesherPool::Impl::run(std::list<MesherTask>& tasks, std::size_t jobs) {
-  std::list<MesherTask*> running;
-  auto waiting = tasks.begin();
+void MesherPool::Stream::run() {
+  const std::size_t jobs = job_count(options_);
   try {
-    while (waiting != tasks.end() || !running.empty()) {
-      for (; waiting != tasks.end() && running.size() < jobs; ++waiting)
-        running.push_back(&*waiting);
-      for (MesherTask* task : running)
-        if (!task->running()) task->start(spawner, ++tokens);
-      wait(running);
-      running.remove_if([](const MesherTask* task) { return task->finished(); });
+    for (;;) {
+      while (running_.size() < jobs) {
+        Batch* batch = start_next();
+        if (!batch) break;
+        running_.push_back(batch->task.get());
+      }
+      for (MesherTask* task : running_)
+        if (!task->running()) task->start(pool_.spawner, ++pool_.tokens);
+      if (running_.empty()) return;
+      refill();  // while the meshers work
+      pool_.wait(running_);
+      running_.remove_if([](const MesherTask* task) { return task->finished(); });
+      pass_on();
     }
   } catch (const core::RecoverableError&) {
-    for (MesherTask* task : running)
-      if (task->running()) spawner.kill_child(task->token());
+    for (MesherTask* task : running_)
+      if (task->running()) pool_.spawner.kill_child(task->token());
     throw;
   }
 }
 
-void MesherPool::Impl::wait(std::list<MesherTask*>& running) {
+std::size_t MesherPool::Stream::batches() const {
+  std::size_t count = 0;
+  for (const auto& line : lines_) count += line.size();
+  return count;
+}
+
+/// One batch ready for the first mesher, if there are grains left and room for them.
+void MesherPool::Stream::refill() {
+  auto& line = lines_.front();
+  if (!line.empty() && !line.back().task) return;
+  if (batches() < most_batches) read_batch();
+}
+
+/// False if there was nothing left to read.
+bool MesherPool::Stream::read_batch() {
+  Batch& batch = gathering_.front();
+  while (asked_ < count_ && batch.places.size() < batch_size) {
+    const std::size_t place = asked_++;
+    GrainRequest request = source_(place);
+    Candidates candidates;
+    candidates.faults.resize(options_.meshers.size());
+    if (const std::string fault = surface_fault(request.surface); !fault.empty()) {
+      candidates.faults[0] = fmt::format("grain {}: {}", request.grain + 1, fault);
+      sink_(place, result_of(request, candidates, options_));
+      continue;
+    }
+    batch.places.push_back(place);
+    batch.requests.push_back(std::move(request));
+    batch.candidates.push_back(std::move(candidates));
+  }
+  if (batch.places.empty()) return false;
+  close_batch(0);
+  return true;
+}
+
+void MesherPool::Stream::close_batch(std::size_t mesher) {
+  lines_[mesher].push_back(std::move(gathering_[mesher]));
+  gathering_[mesher] = {};
+}
+
+/// Grains that have come further go first; their mesh is then soon off our hands.
+Batch* MesherPool::Stream::start_next() {
+  for (std::size_t m = lines_.size(); m-- > 0;)
+    for (auto& batch : lines_[m])
+      if (!batch.task) {
+        start(batch, m);
+        return &batch;
+      }
+  if (batches() >= most_batches || !read_batch()) return nullptr;
+  start(lines_.front().back(), 0);
+  return &lines_.front().back();
+}
+
+void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
+  const auto take_mesh = [&batch, mesher, this](std::size_t i, VolumeMesh&& mesh) {
+    batch.candidates[i].offer(mesher, std::move(mesh), options_.element_size);
+  };
+  const auto take_fault = [&batch, mesher](std::size_t i, const std::string& why) {
+    batch.candidates[i].faults[mesher] = why;
+  };
+  batch.task = std::make_unique<MesherTask>(
+      batch.requests, 0, batch.places.size(), options_.meshers[mesher], options_.element_size,
+      options_.timeout, MesherTask::Sink{take_mesh, take_fault});
+}
+
+void MesherPool::Stream::pass_on() {
+  bool none_before = asked_ == count_;
+  for (std::size_t m = 0; m < lines_.size(); ++m) {
+    auto& line = lines_[m];
+    if (none_before && !gathering_[m].places.empty()) close_batch(m);
+    while (!line.empty() && line.front().finished()) {
+      pass_on(m, line.front());
+      line.pop_front();
+    }
+    none_before = none_before && line.empty();
+  }
+}
+
+void MesherPool::Stream::pass_on(std::size_t mesher, Batch& batch) {
+  for (std::size_t i = 0; i < batch.places.size(); ++i) {
+    if (mesher + 1 == lines_.size()) {
+      sink_(batch.places[i], result_of(batch.requests[i], batch.candidates[i], options_));
+      continue;
+    }
+    Batch& next = gathering_[mesher + 1];
+    next.places.push_back(batch.places[i]);
+    next.requests.push_back(std::move(batch.requests[i]));
+    next.candidates.push_back(std::move(batch.candidates[i]));
+    if (next.places.size() == batch_size) close_batch(mesher + 1);
+  }
+}
+
+void MesherPool::Impl::wait(const std::list<MesherTask*>& running) {
   std::vector<pollfd> sources{{spawner.control(), POLLIN, 0}};
   std::vector<MesherTask*> owners{nullptr};
   for (MesherTask* task : running)
@@ -149,7 +291,7 @@ void MesherPool::Impl::wait(std::list<MesherTask*>& running) {
   if (sources[0].revents != 0) take_reports(running);
 }
 
-void MesherPool::Impl::take_reports(std::list<MesherTask*>& running) {
+void MesherPool::Impl::take_reports(const std::list<MesherTask*>& running) {
   while (const auto message = spawner.next_message()) {
     if (message->kind == protocol::Control::ended) cpu_seconds += message->cpu_seconds;
     for (MesherTask* task : running)
@@ -177,34 +319,17 @@ double MesherPool::cpu_seconds() const { return impl_->cpu_seconds; }
 
 std::vector<GrainResult> MesherPool::mesh(const std::vector<GrainRequest>& requests,
                                           const PoolOptions& options) {
+  std::vector<GrainResult> results(requests.size());
+  mesh(
+      requests.size(), [&](std::size_t i) { return requests[i]; },
+      [&](std::size_t i, GrainResult&& result) { results[i] = std::move(result); }, options);
+  return results;
+}
+
+void MesherPool::mesh(std::size_t count, const RequestSource& source, const ResultSink& sink,
+                      const PoolOptions& options) {
   check_options(options);
-  std::vector<Candidates> candidates(requests.size());
-  std::vector<GrainRequest> sound;
-  std::vector<std::size_t> place;  // of each sound request among all
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    candidates[i].faults.resize(options.meshers.size());
-    const std::string fault = surface_fault(requests[i].surface);
-    if (fault.empty()) {
-      sound.push_back(requests[i]);
-      place.push_back(i);
-    } else {
-      candidates[i].faults[0] = fmt::format("grain {}: {}", requests[i].grain + 1, fault);
-    }
-  }
-  std::list<MesherTask> tasks;
-  for (std::size_t first = 0; first < sound.size(); first += batch_size)
-    for (std::size_t m = 0; m < options.meshers.size(); ++m)
-      tasks.emplace_back(sound, first, std::min(first + batch_size, sound.size()),
-                         options.meshers[m], options.element_size, options.timeout,
-                         MesherTask::Sink{[&, m](std::size_t i, VolumeMesh&& mesh) {
-                                            candidates[place[i]].offer(m, std::move(mesh),
-                                                                       options.element_size);
-                                          },
-                                          [&, m](std::size_t i, const std::string& why) {
-                                            candidates[place[i]].faults[m] = why;
-                                          }});
-  impl_->run(tasks, job_count(options));
-  return collect(requests, options, candidates);
+  Stream(*impl_, count, source, sink, options).run();
 }
 
 }  // namespace polyslip::mesh

@@ -25,10 +25,10 @@ constexpr int copy_rounds = 4;
 constexpr int volume_corrections = 2;
 
 /// The grains of an undeformed polycrystal fill its domain, but for rounding.
-void check_domain(const Mesh& mesh) {
+void check_domain(const Mesh& mesh, int threads) {
   constexpr double rounding = 1e-12;
   double sum = 0;
-  for (double v : grain_volumes(mesh)) sum += v;
+  for (double v : grain_volumes(mesh, threads)) sum += v;
   const double domain = mesh.domain.volume;
   if (!(std::abs(sum - domain) <= rounding * domain))
     throw core::InternalError(fmt::format(
@@ -39,44 +39,62 @@ void check_domain(const Mesh& mesh) {
 class Pipeline {
  public:
   Pipeline(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
-           const GrainMeshers& meshers, MeshingReport& report)
+           const GrainMeshers& meshers, MeshingReport& report, const MeshingProgress& progress)
       : geometry_(geometry),
         options_(options),
         scale_(scale),
         meshers_(meshers),
         report_(report),
+        progress_(progress),
+        threads_(core::thread_count(options.jobs)),
         boundary_(geometry, options, scale),
         results_(geometry.topology.cell_count()) {}
 
-  Mesh run(const std::function<void(double)>& progress) {
-    const auto tell = [&](double fraction) {
-      if (progress) progress(fraction);
-    };
-    for (int round = 0;; ++round) {
-      const auto changed = boundary_.update();
-      tell(round == 0 ? 0.1 : 0.8);
-      mesh_grains(changed);
-      const auto failed = failed_grains();
-      if (failed.empty()) break;
-      if (round == copy_rounds || !copy_faces(failed, round)) give_up(failed.front());
-    }
-    tell(0.9);
+  Mesh run() {
+    mesh_until_all_are();
     std::vector<VolumeMesh> volumes;
+    volumes.reserve(results_.size());
     for (auto& r : results_) volumes.push_back(std::move(r.mesh));
-    if (options_.slide_boundary)
-      slide_boundary(boundary_, volumes, options_.progression_factor,
-                     core::thread_count(options_.jobs));
-    Mesh mesh = assemble(geometry_, boundary_, volumes, scale_, options_.order);
+    if (options_.slide_boundary) {
+      tell("sliding nodes", 0);
+      const auto measure = report_.times.measure("sliding");
+      slide_boundary(boundary_, volumes, options_.progression_factor, threads_);
+    }
+    tell("assembling", 0);
+    const auto measure = report_.times.measure("assembly");
+    Mesh mesh =
+        assemble(geometry_, boundary_, std::move(volumes), scale_, options_.order, threads_);
     check_progression();
-    report_.straightened = mend_curved_elements(mesh);
+    tell("assembling", 0.5);
+    report_.straightened = mend_curved_elements(mesh, threads_);
     if (geometry_.from_mesh && options_.order == 2) keep_volumes(mesh);
     fill_report();
-    if (!geometry_.from_mesh) check_domain(mesh);
-    tell(1.0);
+    if (!geometry_.from_mesh) check_domain(mesh, threads_);
+    tell("assembling", 1);
     return mesh;
   }
 
  private:
+  void tell(const char* stage, double fraction) const {
+    if (progress_) progress_(stage, fraction);
+  }
+
+  /// Meshes of the boundary and of all grains, copying faces as long as some grain has none.
+  void mesh_until_all_are() {
+    for (int round = 0;; ++round) {
+      tell("meshing faces", 0);
+      const auto changed = [&] {
+        const auto measure = report_.times.measure("faces");
+        return boundary_.update();
+      }();
+      const auto measure = report_.times.measure("grains");
+      mesh_grains(changed);
+      const auto failed = failed_grains();
+      if (failed.empty()) return;
+      if (round == copy_rounds || !copy_faces(failed, round)) give_up(failed.front());
+    }
+  }
+
   GrainSurface surface(int grain) const {
     const auto numbers = boundary_.numbers();
     return grain_surface(geometry_.topology, boundary_, numbers, boundary_.positions(numbers),
@@ -91,20 +109,27 @@ class Pipeline {
         if (c >= 0) stale[c] = true;
     const auto numbers = boundary_.numbers();
     const auto positions = boundary_.positions(numbers);
-    std::vector<GrainRequest> requests;
+    std::vector<int> grains;
     for (int grain = 0; grain < topology.cell_count(); ++grain)
-      if (stale[grain])
-        requests.push_back(
-            {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh,
-             boundary_.grain_size(grain)});
-    auto answers = meshers_(requests);
-    if (answers.size() != requests.size())
+      if (stale[grain]) grains.push_back(grain);
+    std::size_t got = 0;
+    const auto request = [&](std::size_t i) -> GrainRequest {
+      const int grain = grains[i];
+      return {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh,
+              boundary_.grain_size(grain)};
+    };
+    const auto take = [&](std::size_t i, GrainResult&& result) {
+      result.mesh.nodes.shrink_to_fit();
+      result.mesh.tetrahedra.shrink_to_fit();
+      results_[grains[i]] = std::move(result);
+      tell("meshing grains", static_cast<double>(++got) / static_cast<double>(grains.size()));
+    };
+    meshers_(grains.size(), request, take);
+    if (got != grains.size())
       throw core::InternalError(
-          fmt::format("meshing: {} grains asked for, {} got", requests.size(), answers.size()));
-    for (auto& a : answers) {
-      for (const auto& fault : a.faults) report_.faults.push_back(fault);
-      results_[a.grain] = std::move(a);
-    }
+          fmt::format("meshing: {} grains asked for, {} got", grains.size(), got));
+    for (int grain : grains)
+      for (const auto& fault : results_[grain].faults) report_.faults.push_back(fault);
   }
 
   /// New and old surfaces share nodes, not all points between them: what volume that costs is given
@@ -116,7 +141,7 @@ class Pipeline {
       fixed.push_back(boundary_.is_copied(f) || boundary_.is_flat(f));
     for (int i = 0; i < volume_corrections; ++i) {
       correct_volumes(mesh, wanted, fixed);
-      report_.straightened = std::max(report_.straightened, mend_curved_elements(mesh));
+      report_.straightened = std::max(report_.straightened, mend_curved_elements(mesh, threads_));
     }
   }
 
@@ -188,6 +213,8 @@ class Pipeline {
   Vec3 scale_;
   const GrainMeshers& meshers_;
   MeshingReport& report_;
+  const MeshingProgress& progress_;
+  int threads_;
   BoundaryMesher boundary_;
   std::vector<GrainResult> results_;
 };
@@ -205,9 +232,9 @@ std::string repairs_text(const MeshingReport& report) {
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,
-                   const std::function<void(double)>& progress) {
+                   const MeshingProgress& progress) {
   report = {};
-  return Pipeline(geometry, options, scale, meshers, report).run(progress);
+  return Pipeline(geometry, options, scale, meshers, report, progress).run();
 }
 
 }  // namespace polyslip::mesh

@@ -2,6 +2,8 @@
 // Meshing one grain's inside from its surface, by several meshers in worker processes.
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,6 +48,11 @@ struct GrainResult {
   std::vector<std::string> faults;
 };
 
+/// Makes the request at a place among all; each is asked for once, in their order.
+using RequestSource = std::function<GrainRequest(std::size_t place)>;
+/// Takes the result of the request at a place.
+using ResultSink = std::function<void(std::size_t place, GrainResult&& result)>;
+
 struct PoolOptions {
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
   double element_size = 0.5;  ///< c_l
@@ -74,12 +81,17 @@ class MesherPool {
   /// InternalError if the pool's own process is gone.
   std::vector<GrainResult> mesh(const std::vector<GrainRequest>& requests,
                                 const PoolOptions& options);
+  /// The same for `count` requests that are made when a mesher is free for them and forgotten when
+  /// they are meshed: no more than 10,000 are held at once. Results come in any order.
+  void mesh(std::size_t count, const RequestSource& source, const ResultSink& sink,
+            const PoolOptions& options);
 
   /// CPU time of all mesher processes so far [s].
   double cpu_seconds() const;
 
  private:
   struct Impl;
+  class Stream;
   explicit MesherPool(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -9,11 +9,13 @@
 
 #include "core/error.hpp"
 #include "mesh/boundary_mesh.hpp"
+#include "mesh/curvature_bound.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/pipeline.hpp"
 #include "mesh/projection.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/volume_correction.hpp"
+#include "surfaces.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -52,7 +54,7 @@ MeshingOptions options_of(double element_size) {
 
 Mesh star_mesh(const Geometry& geometry, const MeshingOptions& options, MeshingReport& report,
                const Vec3& scale = Vec3::Ones()) {
-  return mesh_geometry(geometry, options, scale, GrainMeshers(star_meshes), report);
+  return mesh_geometry(geometry, options, scale, test::at_once(star_meshes), report);
 }
 
 /// n^3 cubes of unit volume.
@@ -290,7 +292,7 @@ TEST(MeshGeometry, CopiesEveryFaceOfAGrainThatFailsOtherwise) {
     return results;
   };
   const Mesh mesh =
-      mesh_geometry(geometry_of(old), options_of(0.5), Vec3::Ones(), GrainMeshers(picky), report);
+      mesh_geometry(geometry_of(old), options_of(0.5), Vec3::Ones(), test::at_once(picky), report);
   ASSERT_NO_THROW(check(mesh));
   auto wanted = old_faces;
   std::sort(wanted.begin(), wanted.end());
@@ -310,7 +312,7 @@ TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
   for (bool from_mesh : {false, true}) {
     Geometry g = from_mesh ? geometry_of(star_mesh(cubes(2), options_of(0.5), report)) : cubes(2);
     try {
-      mesh_geometry(g, options_of(0.5), Vec3::Ones(), GrainMeshers(failing), report);
+      mesh_geometry(g, options_of(0.5), Vec3::Ones(), test::at_once(failing), report);
       FAIL() << "nothing was thrown";
     } catch (const core::RecoverableError& error) {
       EXPECT_NE(std::string(error.what()).find("grain 3"), std::string::npos) << error.what();
@@ -383,9 +385,18 @@ TEST(CurvedElements, AreMendedInsideFirstAndThenAtTheSurface) {
         if (std::abs(mesh.nodes[t[i]][0] - 1) < 1e-12) mesh.nodes[t[i]][0] = 1 - bulge;
     const Mesh bent = mesh;
     double worst = 1;
-    for (int e = 0; e < mesh.element_count(); ++e)
-      worst = std::min(worst, least_jacobian_ratio(mesh, e));
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const double least = least_jacobian_ratio(mesh, e), bound = curvature_bound(mesh, e);
+      worst = std::min(worst, least);
+      if (bound < 1) {
+        EXPECT_GE(least, std::pow(1 - bound, 3) * (1 - 1e-12));
+      }
+    }
+    Mesh other = mesh;
     const int moved = mend_curved_elements(mesh);
+    EXPECT_EQ(mend_curved_elements(other, 3), moved);
+    EXPECT_EQ(other.nodes, mesh.nodes);
+    EXPECT_NO_THROW(check(mesh, 3));
     for (int e = 0; e < mesh.element_count(); ++e) EXPECT_GE(least_jacobian_ratio(mesh, e), 0.1);
     ASSERT_NO_THROW(check(mesh));
     int differ = 0, surface = 0;

@@ -1,8 +1,10 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
+
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <cmath>
 
 #include <csignal>
 #include <cstdlib>
@@ -119,6 +121,56 @@ INSTANTIATE_TEST_SUITE_P(Pool, EveryMesher, testing::ValuesIn(all_meshers), [](c
   std::erase(name, '-');
   return name;
 });
+
+TEST(MesherPool, AsksForGrainsWhenItNeedsThem) {
+  auto requests = ellipsoids(80);
+  requests[3].surface.nodes[0][1] = std::nan("");  // never reaches a mesher
+  const auto pool = start_pool();
+  PoolOptions options;
+  options.meshers = {"gmsh-hxt", "gmsh-delaunay"};
+  const auto together = pool->mesh(requests, options);
+  for (const int jobs : {1, 3}) {
+    options.jobs = jobs;
+    std::size_t asked = 0, got = 0, asked_at_first_result = 0;
+    std::vector<GrainResult> results(requests.size());
+    pool->mesh(
+        requests.size(),
+        [&](std::size_t place) {
+          EXPECT_EQ(place, asked++);
+          return requests[place];
+        },
+        [&](std::size_t place, GrainResult&& result) {
+          if (result.ok && asked_at_first_result == 0) asked_at_first_result = asked;
+          EXPECT_EQ(result.grain, static_cast<int>(place));
+          results[place] = std::move(result);
+          ++got;
+        },
+        options);
+    EXPECT_EQ(asked, 80u);
+    EXPECT_EQ(got, 80u);
+    if (jobs == 1) {
+      EXPECT_LT(asked_at_first_result, 80u);
+    }
+    EXPECT_FALSE(results[3].ok);
+    EXPECT_EQ(results[3].faults, together[3].faults);
+    results[3] = results[4];
+    auto expected = together;
+    expected[3] = expected[4];
+    expect_identical(expected, results);
+  }
+}
+
+TEST(MesherPool, StopsWhenAGrainCannotBeAskedFor) {
+  const auto requests = ellipsoids(60);
+  const auto pool = start_pool();
+  const auto source = [&](std::size_t place) -> GrainRequest {
+    if (place == 55) throw core::RecoverableError("no such grain");
+    return requests[place];
+  };
+  EXPECT_THROW(pool->mesh(60, source, [](std::size_t, GrainResult&&) {}, {}),
+               core::RecoverableError);
+  EXPECT_TRUE(pool->mesh(ellipsoids(1), {})[0].ok);
+}
 
 TEST(MesherPool, TakesTheBestCandidate) {
   const auto requests = ellipsoids(6);
@@ -302,11 +354,11 @@ TEST(MesherPool, LeavesNoProcessBehindWhenItsParentIsKilled) {
   ASSERT_EQ(prctl(PR_SET_CHILD_SUBREAPER, 1), 0);  // orphans come to this process
   const pid_t parent = fork();
   if (parent == 0) {
-    const auto pool = start_pool("gmsh-hxt:0:hang,netgen:0:hang");
+    const auto pool = start_pool("gmsh-hxt:0:hang,gmsh-hxt:25:hang");
     PoolOptions options;
     options.jobs = 2;
-    options.meshers = {"gmsh-hxt", "netgen"};
-    pool->mesh(ellipsoids(2), options);
+    options.meshers = {"gmsh-hxt"};
+    pool->mesh(ellipsoids(26), options);  // two batches
     _exit(0);
   }
   std::vector<pid_t> server, children;

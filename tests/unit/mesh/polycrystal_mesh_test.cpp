@@ -46,9 +46,14 @@ TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
     MeshingOptions options;
     options.element_size = size;
     MeshingReport report;
-    std::vector<double> progress;
-    const Mesh mesh = mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), *pool, report,
-                                    [&](double p) { progress.push_back(p); });
+    std::vector<std::string> stages;
+    std::vector<double> grains;
+    const auto progress = [&](const std::string& stage, double fraction) {
+      if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+      if (stage == "meshing grains") grains.push_back(fraction);
+    };
+    const Mesh mesh =
+        mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), *pool, report, progress);
     ASSERT_NO_THROW(check(mesh));
     const auto volumes = grain_volumes(mesh);
     EXPECT_NEAR(std::accumulate(volumes.begin(), volumes.end(), 0.0) / 30, 1, 1e-12);
@@ -60,8 +65,13 @@ TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
     }
     EXPECT_EQ(std::accumulate(report.wins.begin(), report.wins.end(), 0), 30);
     EXPECT_TRUE(report.faults.empty());
-    EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
-    EXPECT_EQ(progress.back(), 1.0);
+    EXPECT_EQ(stages, (std::vector<std::string>{"meshing faces", "meshing grains", "sliding nodes",
+                                                "assembling"}));
+    EXPECT_TRUE(std::is_sorted(grains.begin(), grains.end()));
+    ASSERT_EQ(grains.size(), 30u);
+    EXPECT_EQ(grains.back(), 1.0);
+    for (const char* stage : {"faces", "grains", "sliding", "assembly"})
+      EXPECT_GT(report.times.seconds(stage), 0) << stage;
   }
 }
 

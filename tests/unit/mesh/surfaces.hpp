@@ -5,6 +5,7 @@
 #include <set>
 #include <vector>
 
+#include "mesh/pipeline.hpp"
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh::test {
@@ -34,6 +35,18 @@ inline SurfaceMesh voxel_surface(const std::set<std::array<int, 3>>& cells, doub
         surface.triangles.push_back({n[0], n[2], n[3]});
       }
   return surface;
+}
+
+/// Meshers that take all requests at once.
+inline GrainMeshers at_once(
+    const std::function<std::vector<GrainResult>(const std::vector<GrainRequest>&)>& meshers) {
+  return [meshers](std::size_t count, const RequestSource& source, const ResultSink& sink) {
+    std::vector<GrainRequest> requests;
+    for (std::size_t i = 0; i < count; ++i) requests.push_back(source(i));
+    auto results = meshers(requests);
+    // Results may come in any order.
+    for (std::size_t i = results.size(); i-- > 0;) sink(i, std::move(results[i]));
+  };
 }
 
 inline SurfaceMesh cube_surface(int n, double size) {

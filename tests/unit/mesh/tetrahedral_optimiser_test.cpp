@@ -17,6 +17,7 @@
 #include "mesh/node_relocation.hpp"
 #include "mesh/pipeline.hpp"
 #include "mesh/tet_store.hpp"
+#include "surfaces.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -292,7 +293,8 @@ TEST(TetrahedralOptimiser, ImprovesTheGrainsOfAPolycrystal) {
     return optimised;
   };
   MeshingReport report;
-  const Mesh mesh = mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), both, report);
+  const Mesh mesh =
+      mesh_geometry(geometry_of(tessellation), options, Vec3::Ones(), test::at_once(both), report);
   ASSERT_NO_THROW(check(mesh));
   EXPECT_GT(after.mean(), before.mean() + 0.01);
   EXPECT_GT(after.worst / grains, before.worst / grains + 0.02);
