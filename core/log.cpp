@@ -83,7 +83,7 @@ void Log::info(const std::string& line) { impl_->line(spdlog::level::info, line)
 void Log::warning(const std::string& line) { impl_->line(spdlog::level::warn, "warning: " + line); }
 void Log::error(const std::string& line) { impl_->line(spdlog::level::err, "error: " + line); }
 
-void Log::progress(const std::string& what, double done, double total) {
+void Log::progress(const std::string& what, const std::string& stage, double done, double total) {
   if (!impl_->speaks) return;
   const double now = wall_seconds();
   const bool first = what != impl_->progress_what;
@@ -94,7 +94,7 @@ void Log::progress(const std::string& what, double done, double total) {
   const double interval = impl_->terminal ? terminal_interval : plain_interval;
   if (now - impl_->progress_last < interval && !(first && impl_->terminal)) return;
   impl_->progress_last = now;
-  const std::string text = progress_text(what, done, total, now - impl_->progress_start);
+  const std::string text = progress_text(what, done, total, now - impl_->progress_start, stage);
   if (impl_->terminal) {
     std::fputs(("\r\033[K" + text).c_str(), stdout);
     impl_->progress_shown = true;
@@ -112,9 +112,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {} min", min / 60, min % 60);
 }
 
-std::string progress_text(const std::string& what, double done, double total, double elapsed) {
+std::string progress_text(const std::string& what, double done, double total, double elapsed,
+                          const std::string& stage) {
   const double fraction = total > 0 ? std::clamp(done / total, 0.0, 1.0) : 0;
   std::string text = fmt::format("{}: {:.0f} %", what, 100 * fraction);
+  if (!stage.empty()) text += " (" + stage + ")";
   if (fraction >= 1e-3 && fraction < 1)
     text += ", " + duration_text(elapsed * (1 - fraction) / fraction) + " left";
   return text;

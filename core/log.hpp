@@ -41,7 +41,11 @@ class Log {
   /// How far `what` is: `done` of `total`, any unit. On a terminal a line that rewrites itself,
   /// with how long still; elsewhere a line now and then (not in log.txt). A new `what` starts its
   /// clock.
-  void progress(const std::string& what, double done, double total);
+  void progress(const std::string& what, double done, double total) {
+    progress(what, {}, done, total);
+  }
+  /// With the stage of it that is at work; a new stage does not start the clock anew.
+  void progress(const std::string& what, const std::string& stage, double done, double total);
 
  private:
   struct Impl;
@@ -52,7 +56,9 @@ class Log {
 /// "55 s", "12 min", "3 h 20 min"
 std::string duration_text(double seconds);
 
-/// "deforming: 42 %, 3 min left"; without the last part until a tenth of a per cent is done.
-std::string progress_text(const std::string& what, double done, double total, double elapsed);
+/// "deforming: 42 %, 3 min left"; without the last part until a tenth of a per cent is done. With a
+/// stage "mesh: 42 % (checking), 3 min left".
+std::string progress_text(const std::string& what, double done, double total, double elapsed,
+                          const std::string& stage = {});
 
 }  // namespace polyslip::core

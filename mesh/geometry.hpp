@@ -65,7 +65,7 @@ struct MeshingReport {
   int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                ///< mean over grains of eq. (5)
   double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
-  core::StageTimes times;  ///< of this process: "faces", "grains" (without the meshers), "sliding",
+  core::StageTimes times;  ///< of this process: "faces", "meshing" (without the meshers), "sliding",
                            ///< "assembly"
 };
 

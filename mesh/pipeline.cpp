@@ -87,7 +87,7 @@ class Pipeline {
         const auto measure = report_.times.measure("faces");
         return boundary_.update();
       }();
-      const auto measure = report_.times.measure("grains");
+      const auto measure = report_.times.measure("meshing");
       mesh_grains(changed);
       const auto failed = failed_grains();
       if (failed.empty()) return;

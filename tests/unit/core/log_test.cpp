@@ -51,6 +51,7 @@ TEST(Log, ProgressSaysWhatHowFarHowLongStill) {
   EXPECT_EQ(progress_text("deforming", 0, 2, 0), "deforming: 0 %");
   EXPECT_EQ(progress_text("deforming", 0.5, 2, 10), "deforming: 25 %, 30 s left");
   EXPECT_EQ(progress_text("deforming", 2, 2, 10), "deforming: 100 %");
+  EXPECT_EQ(progress_text("mesh", 1, 4, 20, "checking"), "mesh: 25 % (checking), 1 min left");
   EXPECT_EQ(duration_text(59.4), "59 s");
   EXPECT_EQ(duration_text(90), "2 min");
   EXPECT_EQ(duration_text(3600 * 3 + 20 * 60), "3 h 20 min");

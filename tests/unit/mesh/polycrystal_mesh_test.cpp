@@ -70,7 +70,7 @@ TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
     EXPECT_TRUE(std::is_sorted(grains.begin(), grains.end()));
     ASSERT_EQ(grains.size(), 30u);
     EXPECT_EQ(grains.back(), 1.0);
-    for (const char* stage : {"faces", "grains", "sliding", "assembly"})
+    for (const char* stage : {"faces", "meshing", "sliding", "assembly"})
       EXPECT_GT(report.times.seconds(stage), 0) << stage;
   }
 }
