@@ -7,6 +7,7 @@
 #include <map>
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "mesh/planar_mesher.hpp"
 #include "mesh/projection.hpp"
 #include "mesh/size_field.hpp"
@@ -351,18 +352,26 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
     const auto numbers_now = numbers();
     const auto x = positions(numbers_now);
     const auto sizes = node_sizes(numbers_now);
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      if (!face_stale_[i]) continue;
-      const int f = static_cast<int>(i);
+    std::vector<int> stale;
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      if (face_stale_[f]) stale.push_back(static_cast<int>(f));
+    std::vector<std::string> faults(stale.size());
+    core::parallel_for(core::thread_count(options_.jobs), stale.size(), [&](std::size_t i) {
+      if (face_copied_[stale[i]])
+        copy_face_mesh(stale[i]);
+      else
+        faults[i] = mesh_face(stale[i], x, sizes, numbers_now);
+    });
+    for (const int f : stale) {
       face_stale_[f] = false;
       changed[f] = true;
-      if (face_copied_[f]) {
-        copy_face_mesh(f);
-      } else if (const auto fault = mesh_face(f, x, sizes, numbers_now); !fault.empty()) {
-        if (!copy(f))
-          throw core::RecoverableError(fmt::format("{} cannot be meshed: {}", name(f), fault));
-        again = true;
-      }
+    }
+    for (std::size_t i = 0; i < stale.size(); ++i) {
+      if (faults[i].empty()) continue;
+      if (!copy(stale[i]))
+        throw core::RecoverableError(
+            fmt::format("{} cannot be meshed: {}", name(stale[i]), faults[i]));
+      again = true;
     }
   }
 }

@@ -238,7 +238,8 @@ Batch* MesherPool::Stream::start_next() {
 
 void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
   const auto take_mesh = [&batch, mesher, this](std::size_t i, VolumeMesh&& mesh) {
-    batch.candidates[i].offer(mesher, std::move(mesh), options_.element_size);
+    const double size = batch.requests[i].element_size;
+    batch.candidates[i].offer(mesher, std::move(mesh), size > 0 ? size : options_.element_size);
   };
   const auto take_fault = [&batch, mesher](std::size_t i, const std::string& why) {
     batch.candidates[i].faults[mesher] = why;
