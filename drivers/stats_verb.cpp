@@ -9,6 +9,7 @@
 #include "drivers/options.hpp"
 #include "mesh/measures.hpp"
 #include "mesh/msh_reader.hpp"
+#include "mesh/size_field.hpp"
 #include "mesh/tess_reader.hpp"
 #include "results/names.hpp"
 #include "results/statistics_files.hpp"
@@ -21,16 +22,16 @@ namespace fs = std::filesystem;
 struct Subject {
   std::optional<mesh::Tessellation> tessellation;
   std::optional<mesh::MeshFile> mesh;
-  std::optional<double> element_size;  ///< of the deck
+  std::optional<mesh::MeshingOptions> meshing;  ///< of the deck
 };
 
-/// c_l of the deck that a folder's mesh was made by; nothing if the mesh came from a file.
-std::optional<double> element_size_of(const std::string& deck_path) {
+/// [mesh] of the deck that a folder's mesh was made by; nothing if the mesh came from a file.
+std::optional<mesh::MeshingOptions> meshing_of(const std::string& deck_path) {
   if (!fs::exists(deck_path)) return {};
   core::Deck deck = core::Deck::from_file(deck_path);
   const Options options = read_options(deck, Purpose::mesh);
   if (options.input.mesh) return {};
-  return options.mesh.element_size;
+  return options.mesh;
 }
 
 Subject read_folder(const std::string& folder) {
@@ -44,7 +45,7 @@ Subject read_folder(const std::string& folder) {
                     folder, results::tessellation_name, results::mesh_name(0)));
   if (fs::exists(tess)) subject.tessellation = mesh::read_tess(tess).tessellation;
   if (fs::exists(msh)) {
-    subject.element_size = element_size_of(results::in_folder(folder, results::resolved_deck_name));
+    subject.meshing = meshing_of(results::in_folder(folder, results::resolved_deck_name));
     subject.mesh = mesh::read_msh(msh);
   }
   if (subject.tessellation && subject.mesh &&
@@ -72,25 +73,37 @@ Subject read_subject(const std::string& input) {
   return subject;
 }
 
+results::StatisticsOptions options_of(const StatsRequest& request, const Subject& subject) {
+  results::StatisticsOptions options;
+  options.inner = request.inner;
+  if (request.element_size) {
+    options.element_size = request.element_size;
+    options.element_size_source = results::ElementSizeSource::option;
+  } else if (subject.meshing && subject.mesh) {
+    options.element_size = subject.meshing->element_size;
+    options.element_size_source = results::ElementSizeSource::deck;
+    if (subject.meshing->outer_element_size || !subject.meshing->grain_element_sizes.empty())
+      options.element_sizes =
+          mesh::element_sizes(subject.mesh->mesh.topology, *subject.meshing).grains;
+  }
+  return options;
+}
+
 }  // namespace
 
 void print_statistics(const StatsRequest& request) {
   if (!request.to.empty()) results::check_statistics_folder(request.to, request.overwrite);
   const Subject subject = read_subject(request.input);
-  results::StatisticsOptions options;
-  options.inner = request.inner;
-  options.element_size = request.element_size ? request.element_size : subject.element_size;
-  if (options.element_size)
-    options.element_size_source = request.element_size ? results::ElementSizeSource::option
-                                                       : results::ElementSizeSource::deck;
   const mesh::Mesh* mesh = subject.mesh ? &subject.mesh->mesh : nullptr;
   auto statistics = results::statistics_of(
       subject.tessellation ? mesh::measure(*subject.tessellation) : mesh::measure(*mesh), mesh,
-      options);
+      options_of(request, subject));
   if (subject.mesh) {
     statistics.grain_ids = subject.mesh->grain_ids;
     statistics.file_rows = subject.mesh->file_rows;
   }
+  const mesh::Domain& domain = subject.tessellation ? subject.tessellation->domain : mesh->domain;
+  for (const mesh::DomainFace& face : domain.faces) statistics.domain_faces.push_back(face.name);
   std::cout << results::table_text(statistics, request.input);
   if (request.to.empty()) return;
   std::cout << "\nwritten to " << request.to << ":";

@@ -253,8 +253,14 @@ ElementMeasures measure_element(const Mesh& mesh, int element) {
 }
 
 std::vector<GrainMeshMeasures> measure_grain_meshes(const Mesh& mesh, double element_size) {
+  return measure_grain_meshes(mesh,
+                              std::vector<double>(mesh.topology.cell_faces.size(), element_size));
+}
+
+std::vector<GrainMeshMeasures> measure_grain_meshes(const Mesh& mesh,
+                                                    const std::vector<double>& element_sizes) {
   std::vector<GrainMeshMeasures> grains(mesh.topology.cell_faces.size());
-  std::vector<QualityCriterion> criteria(grains.size(), QualityCriterion(element_size));
+  std::vector<QualityCriterion> criteria(element_sizes.begin(), element_sizes.end());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const ElementMeasures m = measure_element(mesh, e);
     GrainMeshMeasures& grain = grains[mesh.tetrahedron_cell[e]];

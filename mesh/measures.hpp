@@ -75,7 +75,10 @@ struct GrainMeshMeasures {
   double O_dis = 0, O_size = 0, O = 0;  ///< eqs. (6), (7), (5) of the paper
 };
 
-/// One a grain; `element_size`: c_l of eq. (7).
+/// One a grain; `element_sizes`: [grain] c_l of eq. (7).
+std::vector<GrainMeshMeasures> measure_grain_meshes(const Mesh& mesh,
+                                                    const std::vector<double>& element_sizes);
+/// The same c_l for all.
 std::vector<GrainMeshMeasures> measure_grain_meshes(const Mesh& mesh, double element_size);
 
 }  // namespace polyslip::mesh

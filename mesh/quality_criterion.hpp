@@ -13,7 +13,9 @@ class QualityCriterion {
   explicit QualityCriterion(double element_size) : element_size_(element_size) {}
 
   /// `length`: l_i, the mean of the element's edge lengths.
-  void add(double radius_ratio, double length) {
+  void add(double radius_ratio, double length) { add(radius_ratio, length, element_size_); }
+  /// With a c_l of the element's own.
+  void add(double radius_ratio, double length, double element_size) {
     ++count_;
     if (!(radius_ratio > 0)) {
       flat_ = true;
@@ -22,7 +24,7 @@ class QualityCriterion {
     const double power = std::pow(radius_ratio, beta);
     // rho = 1 up to rounding: sigma = 1, as the exponent's limit is 0.
     if (power < 1) log_distortion_ += std::exp(power / (power - 1)) * std::log(radius_ratio);
-    sizes_ += std::min(length / element_size_, element_size_ / length);
+    sizes_ += std::min(length / element_size, element_size / length);
   }
 
   /// O_dis, eq. (6)

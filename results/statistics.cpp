@@ -56,7 +56,7 @@ const Kind element_ratio{"radius_ratio", "radius ratio", "1",
 const Kind element_length{"element_size", "element size", "L",
                           "Mean length of an element's six straight edges."};
 const Kind element_relative{"relative_element_size", "element size / c_l", "1",
-                            "Element size over the size that was asked for.", 2};
+                            "Element size over c_l, the size that was asked for in its grain.", 2};
 const Kind mesh_elements{
     "grain_elements", "elements per grain", "1", "Elements of a grain.", 0, true};
 const Kind mesh_worst{"grain_min_radius_ratio", "worst radius ratio of a grain", "1",
@@ -160,12 +160,20 @@ void add_elements(Statistics& s, const mesh::Mesh& mesh) {
     s.options.element_size = s.quantities.back().distribution.mean;
     s.options.element_size_source = ElementSizeSource::mean;
   }
-  for (float& size : sizes) size = static_cast<float>(size / *s.options.element_size);
+  std::size_t i = 0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int grain = mesh.tetrahedron_cell[e];
+    if (!s.counts(grain)) continue;
+    sizes[i] = static_cast<float>(sizes[i] / s.element_size(grain));
+    ++i;
+  }
   s.quantities.push_back(make(element_relative, std::move(sizes)));
 }
 
 void add_grain_meshes(Statistics& s, const mesh::Mesh& mesh) {
-  s.grain_meshes = mesh::measure_grain_meshes(mesh, *s.options.element_size);
+  std::vector<double> wanted(s.measures.grains.size());
+  for (std::size_t c = 0; c < wanted.size(); ++c) wanted[c] = s.element_size(static_cast<int>(c));
+  s.grain_meshes = mesh::measure_grain_meshes(mesh, wanted);
   const auto add = [&](const Kind& kind, auto value) {
     std::vector<double> values;
     for (std::size_t c = 0; c < s.grain_meshes.size(); ++c)
@@ -179,9 +187,10 @@ void add_grain_meshes(Statistics& s, const mesh::Mesh& mesh) {
   add(mesh_O_size, [](const GrainMeshMeasures& g) { return g.O_size; });
   mesh::QualityCriterion all(*s.options.element_size);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!s.counts(mesh.tetrahedron_cell[e])) continue;
+    const int grain = mesh.tetrahedron_cell[e];
+    if (!s.counts(grain)) continue;
     const mesh::ElementMeasures m = mesh::measure_element(mesh, e);
-    all.add(m.radius_ratio, m.size);
+    all.add(m.radius_ratio, m.size, s.element_size(grain));
   }
   s.O_dis = all.distortion();
   s.O_size = all.size();
@@ -206,6 +215,12 @@ std::string text_of(ElementSizeSource source) {
       break;
   }
   return "nothing";
+}
+
+std::string Statistics::domain_face_name(int face) const {
+  if (face < 0) return "";
+  return face < static_cast<int>(domain_faces.size()) ? domain_faces[face]
+                                                      : std::to_string(face + 1);
 }
 
 const Quantity& Statistics::quantity(const std::string& key) const {
@@ -264,9 +279,10 @@ std::string table_text(const Statistics& s, const std::string& source) {
   for (const auto& [bound, count] : s.quantity("radius_ratio").counts_below)
     text += fmt::format("  {:g}: {}", bound, count);
   text += fmt::format(
-      "\nc_l = {:.4g}, from {}; over all elements O_dis {:.4g}, O_size {:.4g}, O "
+      "\nc_l = {:.4g}{}, from {}; over all elements O_dis {:.4g}, O_size {:.4g}, O "
       "{:.4g}\n",
-      *s.options.element_size, text_of(s.options.element_size_source), s.O_dis, s.O_size, s.O);
+      *s.options.element_size, s.options.element_sizes.empty() ? "" : " (some grains their own)",
+      text_of(s.options.element_size_source), s.O_dis, s.O_size, s.O);
   return text;
 }
 

@@ -32,6 +32,7 @@ struct StatisticsOptions {
   bool inner = false;                  ///< inner grains, and the faces and edges of these, only
   std::optional<double> element_size;  ///< c_l; the mean size of the elements if unknown
   ElementSizeSource element_size_source = ElementSizeSource::none;
+  std::vector<double> element_sizes;  ///< [grain] where grains have a c_l of their own; or empty
 };
 
 struct Statistics {
@@ -42,11 +43,18 @@ struct Statistics {
   std::vector<Quantity> quantities;
   /// The file's own numbers of grains and elements, [grain] and [element]; empty: from 1.
   std::vector<int> grain_ids, file_rows;
-  mesh::Measures measures;                            ///< all, inner or not
+  std::vector<std::string> domain_faces;  ///< names, as in Domain::faces; empty: numbers
+  mesh::Measures measures;                ///< all, inner or not
   std::vector<mesh::GrainMeshMeasures> grain_meshes;  ///< [grain]; empty without a mesh
   double O_dis = 0, O_size = 0, O = 0;  ///< eqs. (6), (7), (5) over all elements that are counted
 
+  /// c_l of a grain; there is a mesh.
+  double element_size(int grain) const {
+    return options.element_sizes.empty() ? *options.element_size : options.element_sizes[grain];
+  }
   int grain_id(int grain) const { return grain_ids.empty() ? grain + 1 : grain_ids[grain]; }
+  /// Name of a face of the domain; empty for -1, no face.
+  std::string domain_face_name(int face) const;
   /// The quantity of that key; InternalError if there is none.
   const Quantity& quantity(const std::string& key) const;
   bool counts(int grain) const { return !options.inner || measures.grains[grain].inner; }

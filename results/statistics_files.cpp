@@ -76,7 +76,7 @@ void write_grains(const std::string& path, const Statistics& s) {
 }
 
 void write_faces(const std::string& path, const Statistics& s) {
-  // The second grain is 0 on the domain boundary, whose faces count from 1 as in files.
+  // The second grain is 0 on the domain boundary, and the domain's face has no name inside.
   write_table(
       path,
       "face,inner,grain_1,grain_2,domain_face,edges,area,diameter,flatness_fault,least_corner",
@@ -84,8 +84,8 @@ void write_faces(const std::string& path, const Statistics& s) {
         const auto& f = s.measures.faces[row];
         if (s.options.inner && !f.inner) return;
         add(text, "{},{:d},{},{},{},{},{},{},{},{}\n", row + 1, f.inner, s.grain_id(f.cells[0]),
-            f.cells[1] < 0 ? 0 : s.grain_id(f.cells[1]), f.domain_face + 1, f.edges, f.area,
-            f.diameter(), f.flatness_fault, f.least_corner);
+            f.cells[1] < 0 ? 0 : s.grain_id(f.cells[1]), s.domain_face_name(f.domain_face), f.edges,
+            f.area, f.diameter(), f.flatness_fault, f.least_corner);
       });
 }
 
@@ -107,7 +107,7 @@ void write_elements(const std::string& path, const Statistics& s, const mesh::Me
                 const auto m = mesh::measure_element(mesh, static_cast<int>(row));
                 const long place = s.file_rows.empty() ? row : s.file_rows[row];
                 add(text, "{},{},{:.6g},{:.6g},{:.6g}\n", place + 1, s.grain_id(grain),
-                    m.radius_ratio, m.size, m.size / *s.options.element_size);
+                    m.radius_ratio, m.size, m.size / s.element_size(grain));
               });
 }
 

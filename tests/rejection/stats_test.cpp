@@ -73,6 +73,27 @@ TEST(Stats, NeverWriteOverEarlierOnes) {
                    "cube.msh: " + file + " is a file, not a folder; give another folder with --to");
 }
 
+/// What is read of a folder, and what it says when something is missing.
+TEST(Stats, OfAFolderOfAMesh) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml",
+                "[polycrystal]\ngrains = 2\n[mesh]\nelement_size = 1.5\nelement_size_outer = 1.2\n"
+                "meshers = [\"gmsh-hxt\"]\n");
+  const Outcome made = run_polyslip({"mesh", "deck.toml", "--out", "out"}, sandbox.path());
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome all = run_polyslip({"stats", "out"}, sandbox.path());
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_NE(all.out.find("out: 2 grains (0 inner)"), std::string::npos) << all.out;
+  EXPECT_NE(all.out.find("c_l = 1.5 (some grains their own), from the deck"), std::string::npos)
+      << all.out;
+  EXPECT_NE(all.out.find("radius ratio"), std::string::npos) << all.out;
+  std::filesystem::remove(sandbox.path() / "out/mesh-000.msh");
+  const Outcome rest = run_polyslip({"stats", "out"}, sandbox.path());
+  EXPECT_EQ(rest.code, 0) << rest.err;
+  EXPECT_EQ(rest.out.find("radius ratio"), std::string::npos) << rest.out;
+  EXPECT_NE(rest.out.find("sphericity"), std::string::npos) << rest.out;
+}
+
 TEST(Stats, OfAnElementSizeThatIsNone) {
   Sandbox sandbox;
   sandbox.write("cube.msh", cube);

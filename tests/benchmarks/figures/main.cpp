@@ -33,9 +33,8 @@ void renew_page(const std::string& page, const std::string& name, const std::str
   core::write_file(page, text);
 }
 
-void make(const std::string& name, const figures::Options& options, const std::string& folder,
-          const std::string& page) {
-  const auto all = all_figures();
+void make(const std::map<std::string, figures::Maker>& all, const std::string& name,
+          const figures::Options& options, const std::string& folder, const std::string& page) {
   const auto maker = all.find(name);
   if (maker == all.end()) {
     std::string names;
@@ -70,7 +69,8 @@ int main(int argc, char** argv) {
   app.add_option("--table", options.tables, "CSV files of mesh_quality, for table-1");
   CLI11_PARSE(app, argc, argv);
   try {
-    for (const std::string& name : names) make(name, options, folder, page);
+    const auto all = all_figures();
+    for (const std::string& name : names) make(all, name, options, folder, page);
   } catch (const core::InputError& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 2;

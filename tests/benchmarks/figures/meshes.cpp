@@ -234,9 +234,7 @@ std::vector<Strategy> multimeshing_strategies() {
           {.label = "ours (default)"}};
 }
 
-Figure figure_10(const Options& wanted) {
-  const Options o = with_defaults(wanted, 1, 500);
-  const auto all = gather(o, multimeshing_strategies());
+Figure figure_10(const Options& o, const std::vector<Gathered>& all) {
   Plot a{.title = "O of the grains"}, b{.title = "O of the grains, logarithmic"};
   a.x = {.label = "O", .from = 0.5, .to = 1};
   b.x = {.label = "O", .from = 0, .to = 1};
@@ -251,9 +249,7 @@ Figure figure_10(const Options& wanted) {
   return {"O of single meshers and of multimeshing", {a, b}, counted(o, all) + quality_table(all)};
 }
 
-Figure figure_11(const Options& wanted) {
-  const Options o = with_defaults(wanted, 1, 500);
-  const auto all = gather(o, multimeshing_strategies());
+Figure figure_11(const Options& o, const std::vector<Gathered>& all) {
   return {"Element quality and size of single meshers and of multimeshing", element_panels(all),
           counted(o, all) + quality_table(all)};
 }
@@ -261,7 +257,17 @@ Figure figure_11(const Options& wanted) {
 }  // namespace
 
 std::map<std::string, Maker> mesh_figures() {
-  return {{"8", figure_8}, {"9", figure_9}, {"10", figure_10}, {"11", figure_11}};
+  // Figures 10 and 11 show the same meshes: made once if both are asked for.
+  const auto meshes = std::make_shared<std::vector<Gathered>>();
+  const auto of_meshes = [meshes](auto draw) {
+    return [meshes, draw](const Options& wanted) {
+      const Options o = with_defaults(wanted, 1, 500);
+      if (meshes->empty()) *meshes = gather(o, multimeshing_strategies());
+      return draw(o, *meshes);
+    };
+  };
+  return {
+      {"8", figure_8}, {"9", figure_9}, {"10", of_meshes(figure_10)}, {"11", of_meshes(figure_11)}};
 }
 
 }  // namespace polyslip::figures

@@ -211,6 +211,10 @@ TEST(Measures, CriterionIsThatOfTheMeshers) {
   tests::distort(mesh, 0.2);
   const auto grains = measure_grain_meshes(mesh, 0.9);
   ASSERT_EQ(grains.size(), 2U);
+  const auto own_sizes = measure_grain_meshes(mesh, std::vector<double>{0.9, 0.4});
+  EXPECT_EQ(own_sizes[0].O, grains[0].O);
+  EXPECT_EQ(own_sizes[1].O_dis, grains[1].O_dis);
+  EXPECT_EQ(own_sizes[1].O_size, measure_grain_meshes(mesh, 0.4)[1].O_size);
   for (int c = 0; c < 2; ++c) {
     VolumeMesh part;
     part.nodes = mesh.nodes;
