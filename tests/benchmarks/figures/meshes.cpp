@@ -241,10 +241,10 @@ Figure figure_10(const Options& o, const std::vector<Gathered>& all) {
   a.y.label = b.y.label = "probability density";
   b.y.logarithmic = true;
   for (const Gathered& g : all) {
-    results::Histogram h(0.5, 1, 50);
+    results::Histogram h(0.5, 1, 25);
     for (const double O : g.O) h.add(O);
     a.series.push_back(curve_of(h, g.label));
-    b.series.push_back(curve(g.O, 1, 50, g.label));
+    b.series.push_back(curve(g.O, 1, 20, g.label));
   }
   return {"O of single meshers and of multimeshing", {a, b}, counted(o, all) + quality_table(all)};
 }
