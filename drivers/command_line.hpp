@@ -17,7 +17,7 @@ struct Command {
   bool overwrite = false;
   std::string restart;  ///< --restart
   int threads = 1;
-  int jobs = 0;  ///< --jobs; 0: one a core
+  int jobs = 0;        ///< --jobs; 0: one a core
   std::string folder;  ///< convert: run folder, or a file that becomes `out`
   std::string format;  ///< convert, of `out`; empty: by its extension
   double at_strain = 0;

@@ -6,8 +6,9 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "drivers/mesh_files.hpp"
 #include "drivers/orientations.hpp"
-#include "mesh/tessellation.hpp"
+#include "mesh/tess_writer.hpp"
 #include "results/names.hpp"
 
 namespace polyslip::drivers {
@@ -146,16 +147,22 @@ Input read_input(const Options& options) {
 mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std::string& folder,
                                 mesh::MesherPool& pool, core::Log& log, core::StageTimes& times) {
   if (options.input.any()) log.info("orientations: {}", orientations_text(options, input));
+  const mesh::GrainNotes notes{.orientations = input.orientations, .ids = {}};
   if (input.mesh) {
     mesh::Mesh mesh = take_mesh(options, input, log);
-    mesh::write_msh(mesh, results::in_folder(folder, results::mesh_name(0)));
+    write_mesh_files(mesh, folder, 0, options.output.mesh_formats, notes);
     return mesh;
   }
   const Progress progress(log);
   const mesh::Geometry geometry = [&] {
     const mesh::Tessellation tessellation = grow(options, input, log, progress, times);
     const auto measure = times.measure("output");
-    mesh::write_tess(tessellation, results::in_folder(folder, results::tessellation_name));
+    mesh::write_tess(tessellation, results::in_folder(folder, results::tessellation_name),
+                     {.orientations = input.orientations,
+                      .ids = {},
+                      .seed_weights = {},
+                      .groups = {},
+                      .crystal = "cubic"});
     return mesh::geometry_of(tessellation);
   }();
   const double workers = pool.cpu_seconds();
@@ -173,7 +180,7 @@ mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std:
   }
   progress("writing", 0);
   const auto measure = times.measure("output");
-  mesh::write_msh(mesh, results::in_folder(folder, results::mesh_name(0)));
+  write_mesh_files(mesh, folder, 0, options.output.mesh_formats, notes);
   progress("writing", 1);
   return mesh;
 }

@@ -7,6 +7,7 @@
 #include "drivers/options_check.hpp"
 #include "drivers/options_sections.hpp"
 #include "drivers/orientations.hpp"
+#include "mesh/mesh_formats.hpp"
 
 namespace polyslip::drivers {
 
@@ -238,6 +239,15 @@ OutputOptions read_output(Deck& deck) {
        .min = 0,
        .help = "A checkpoint to restart from at every multiple of this strain, besides the "
                "end and both sides of each remeshing; 0: at those only."});
+  o.mesh_formats = t.texts(
+      "mesh_formats",
+      {.fallback = o.mesh_formats,
+       .choices = mesh::mesh_format_names(),
+       .unique = true,
+       .not_empty = true,
+       .help = "Files of each mesh, mesh-000.msh and so on: Gmsh's format 2.2 (msh, msh-binary) or "
+               "4.1 (msh4, msh4-binary), one of these; vtu for ParaView; inp for Abaqus. "
+               "docs/formats.md says what they hold."});
   return o;
 }
 

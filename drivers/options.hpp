@@ -37,6 +37,8 @@ struct InputOptions {
 struct OutputOptions {
   std::vector<double> at_strains;        ///< increasing, within [0, final_strain]
   double checkpoint_every_strain = 0.1;  ///< 0: at remeshings and the end only
+  /// Of mesh files, mesh::mesh_format_names(); one of Gmsh's among them.
+  std::vector<std::string> mesh_formats{"msh"};
 };
 
 struct Options {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "drivers/options_sections.hpp"
@@ -93,6 +94,17 @@ void check_strains(Deck& deck, const Options& o) {
     }
 }
 
+/// Files of one name must not be written over each other, and what reads a folder needs one.
+void check_mesh_formats(Deck& deck, const std::vector<std::string>& formats) {
+  const auto gmsh = std::count_if(formats.begin(), formats.end(),
+                                  [](const std::string& f) { return f.starts_with("msh"); });
+  if (gmsh != 1)
+    deck.fault("output", "mesh_formats",
+               fmt::format("mesh_formats names {} of Gmsh's formats; must be one of msh, "
+                           "msh-binary, msh4 and msh4-binary, and any others",
+                           gmsh));
+}
+
 }  // namespace
 
 void check_options(Deck& deck, const Options& options, Purpose purpose) {
@@ -107,6 +119,7 @@ void check_options(Deck& deck, const Options& options, Purpose purpose) {
   check_material(deck, options.material);
   check_loading(deck, options.loading);
   check_strains(deck, options);
+  check_mesh_formats(deck, options.output.mesh_formats);
   if (purpose == Purpose::run && options.mesh.order != 2)
     deck.fault("mesh", "order",
                fmt::format("order = {} is for `polyslip mesh` only; a run needs order = 2",

@@ -12,6 +12,7 @@
 #include "core/version.hpp"
 #include "drivers/deck_record.hpp"
 #include "drivers/generate.hpp"
+#include "drivers/mesh_files.hpp"
 #include "drivers/on_root.hpp"
 #include "drivers/options.hpp"
 #include "drivers/run_progress.hpp"
@@ -239,7 +240,7 @@ void Run::remesh(const mesh::Snapshot& old) {
     const auto load = old.history.find(solver::field::load_program);
     if (load != old.history.end()) fresh.history.insert(*load);
     times_.add("remeshing", pool_.cpu_seconds() - workers);
-    mesh::write_msh(fresh.mesh, path(results::mesh_name(fresh.mesh_number)));
+    write_mesh_files(fresh.mesh, request_.folder, fresh.mesh_number, options_.output.mesh_formats);
     log_.info(remeshing_text(report));
     progress_.remeshings.push_back(remeshing_summary(report));
     progress_.reload.start(old.strain, von_mises(progress_.stress));

@@ -32,7 +32,7 @@ struct Facet {
   int cell;
 };
 
-/// A facet of a face: nodes out of `cell`, into `other` (-1 - b: face b of the box).
+/// A facet of a face: nodes out of `cell`, into `other` (-1 - b: face b of the domain).
 struct Panel {
   std::array<int, 6> nodes;
   int cell, other;
@@ -57,6 +57,7 @@ class TopologyFinder {
 
   void find() {
     find_panels();
+    put_on_domain();
     find_faces();
     find_segments();
     find_vertices();
@@ -74,7 +75,7 @@ class TopologyFinder {
   /// "grain 3", "between grains 3 and 7", "of grain 3 on x0"
   std::string between(int cell, int other) const {
     if (other < 0)
-      return fmt::format("of grain {} on {}", names_[cell], box_face_names[-1 - other]);
+      return fmt::format("of grain {} on {}", names_[cell], mesh_.domain.faces[-1 - other].name);
     return fmt::format("between grains {} and {}", names_[cell], names_[other]);
   }
 
@@ -113,7 +114,7 @@ class TopologyFinder {
         fail("{} elements share a facet of grain {} at {}", end - i, names_[f.cell],
              at(f.nodes[0]));
       if (end - i == 1)
-        panels_.push_back({f.nodes, f.cell, -1 - box_face(f)});
+        panels_.push_back({f.nodes, f.cell, -1 - domain_face(f)});
       else if (facets[i + 1].cell != f.cell)
         panels_.push_back({f.nodes, f.cell, facets[i + 1].cell});
       i = end;
@@ -123,24 +124,41 @@ class TopologyFinder {
     });
   }
 
-  /// The face of the box that a facet without a neighbour lies on; its nodes are put there.
-  int box_face(const Facet& f) {
-    const double near = 1e-6 * mesh_.size.minCoeff();
-    for (int b = 0; b < 6; ++b) {
-      const int axis = b / 2;
-      const double plane = b % 2 ? mesh_.size[axis] : 0.0;
-      if (!std::all_of(f.nodes.begin(), f.nodes.end(), [&](int n) {
-            return n < 0 || std::abs(mesh_.nodes[n][axis] - plane) <= near;
-          }))
-        continue;
-      for (const int n : f.nodes)
-        if (n >= 0) mesh_.nodes[n][axis] = plane;
-      return b;
+  /// How far the nodes of a facet are from a face of the domain, at most.
+  double distance(const Facet& f, const Plane& plane) const {
+    double most = 0;
+    for (const int n : f.nodes)
+      if (n >= 0) most = std::max(most, std::abs(plane.normal.dot(mesh_.nodes[n]) - plane.offset));
+    return most;
+  }
+
+  /// The face of the domain that a facet without a neighbour lies on; its nodes are noted to lie
+  /// there.
+  int domain_face(const Facet& f) {
+    const auto& faces = mesh_.domain.faces;
+    int best = 0;
+    for (int d = 1; d < static_cast<int>(faces.size()); ++d)
+      if (distance(f, faces[d].plane) < distance(f, faces[best].plane)) best = d;
+    if (!(distance(f, faces[best].plane) <= 1e-6 * mesh_.size.minCoeff()))
+      fail(
+          "grain {} has a free facet at {} that lies on no side of the bounding box: the mesh has "
+          "a "
+          "hole or a crack, or its domain is neither a box along the axes nor another convex body",
+          names_[f.cell], at(f.nodes[0]));
+    for (const int n : f.nodes)
+      if (n >= 0) on_domain_.push_back({n, best});
+    return best;
+  }
+
+  void put_on_domain() {
+    const DomainFaceLists lists(mesh_.nodes.size(), std::move(on_domain_));
+    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
+      if (lists[n].empty()) continue;
+      std::vector<Plane> planes;
+      for (const int d : lists[n]) planes.push_back(mesh_.domain.faces[d].plane);
+      put_on_planes(planes, mesh_.nodes[n]);
+      mesh_.nodes[n] = mesh_.nodes[n].cwiseMax(0.0).cwiseMin(mesh_.size);
     }
-    fail(
-        "grain {} has a free facet at {} that lies on no side of the bounding box: the mesh has a "
-        "hole or a crack, or its domain is not a box along the axes",
-        names_[f.cell], at(f.nodes[0]));
   }
 
   /// Sides of all panels, those of the same mesh edge next to each other.
@@ -380,6 +398,7 @@ class TopologyFinder {
   std::vector<Segment> segments_;
   std::vector<std::vector<int>> segments_at_;  ///< of nodes
   std::vector<int> vertex_at_;                 ///< of nodes; -1: none
+  std::vector<std::array<int, 2>> on_domain_;  ///< nodes and the faces they lie on
 };
 
 }  // namespace

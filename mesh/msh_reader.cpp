@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "core/error.hpp"
 #include "mesh/grain_topology.hpp"
+#include "mesh/mesh_domain.hpp"
 #include "mesh/msh_parser.hpp"
 
 namespace polyslip::mesh {
@@ -25,7 +27,7 @@ class MshReader {
     result_.mesh.order = content_.order;
     sort_by_grain();
     number_nodes();
-    place_in_box();
+    place();
     give_orientations();
     finish();
     return std::move(result_);
@@ -62,7 +64,8 @@ class MshReader {
   /// Nodes that tetrahedra use get numbers, in the order of the file.
   void number_nodes() {
     Mesh& mesh = result_.mesh;
-    std::vector<int> used(content_.positions.size(), -1);
+    auto& used = numbers_;
+    used.assign(content_.positions.size(), -1);
     for (const int row : result_.file_rows) {
       const Element& e = content_.tetrahedra[row];
       std::array<int, 10> nodes;
@@ -81,28 +84,82 @@ class MshReader {
         if (n >= 0) n = used[n];
   }
 
-  int place_of(const Element& e, int i) const {
-    const auto found = std::lower_bound(content_.node_ids.begin(), content_.node_ids.end(),
-                                        std::pair{e.nodes[i], 0});
-    if (found == content_.node_ids.end() || found->first != e.nodes[i])
-      fail(fmt::format("element {} has node {}, which is not in $Nodes", e.number, e.nodes[i]));
+  /// The place of a node in the file.
+  std::optional<int> find_node(int id) const {
+    const auto& ids = content_.node_ids;
+    const auto found = std::lower_bound(ids.begin(), ids.end(), std::pair{id, 0});
+    if (found == ids.end() || found->first != id) return {};
     return found->second;
   }
 
-  void place_in_box() {
+  int place_of(const Element& e, int i) const {
+    const auto found = find_node(e.nodes[i]);
+    if (!found)
+      fail(fmt::format("element {} has node {}, which is not in $Nodes", e.number, e.nodes[i]));
+    return *found;
+  }
+
+  /// Names of the physical surfaces, by the corners of their triangles.
+  std::map<std::array<int, 3>, std::string> surfaces() const {
+    std::map<std::array<int, 3>, std::string> found;
+    for (const auto& triangle : content_.triangles) {
+      const auto name = content_.names.find({2, triangle.physical});
+      if (name == content_.names.end()) continue;
+      std::array<int, 3> corners;
+      for (int i = 0; i < 3; ++i) {
+        const auto at = find_node(triangle.corners[i]);
+        corners[i] = at ? numbers_[*at] : -1;
+      }
+      std::sort(corners.begin(), corners.end());
+      if (corners[0] >= 0) found[corners] = name->second;
+    }
+    return found;
+  }
+
+  void place() {
     Mesh& mesh = result_.mesh;
     Vec3 low = mesh.nodes[0], high = low;
     for (const Vec3& x : mesh.nodes) {
       low = low.cwiseMin(x);
       high = high.cwiseMax(x);
     }
+    if (!((high - low).minCoeff() > 0)) fail("the box of the nodes has no volume");
+    check_elements();
+    if (const auto walls = find_walls(mesh, surfaces()))
+      place_in_polyhedron(*walls, low, high);
+    else
+      place_in_box(low, high);
+  }
+
+  double scale_for(double volume) const {
+    const double ratio = result_.mesh.topology.cell_count() / volume;
+    return unit_ == LengthUnit::file || std::abs(ratio - 1) < 1e-9 ? 1.0 : std::cbrt(ratio);
+  }
+
+  void place_in_box(const Vec3& low, const Vec3& high) {
     const Vec3 size = high - low;
-    if (!(size.minCoeff() > 0)) fail("the box of the nodes has no volume");
-    const double ratio = mesh.topology.cell_count() / size.prod();
-    const bool keep = unit_ == LengthUnit::file || std::abs(ratio - 1) < 1e-9;
-    const double scale = keep ? 1.0 : std::cbrt(ratio);
-    mesh.size = scale * size;
-    mesh.domain = box_domain(mesh.size);
+    const double scale = scale_for(size.prod());
+    result_.mesh.domain = box_domain(scale * size);
+    move(low, high, scale);
+  }
+
+  void place_in_polyhedron(const MeshWalls& walls, const Vec3& low, const Vec3& high) {
+    Mesh& mesh = result_.mesh;
+    try {
+      mesh.domain = convex_domain("polyhedron", walls.planes, walls.names);
+      const double scale = scale_for(mesh.domain.volume);
+      if (scale != 1)
+        mesh.domain =
+            convex_domain("polyhedron", walls.planes, walls.names, mesh.topology.cell_count());
+      move(low, high, scale);
+    } catch (const core::InputError& e) {
+      fail(fmt::format("the surface of the mesh is that of no convex body: {}", e.what()));
+    }
+  }
+
+  void move(const Vec3& low, const Vec3& high, double scale) {
+    Mesh& mesh = result_.mesh;
+    mesh.size = mesh.domain.size;
     result_.origin = low;
     result_.scale = scale;
     if (low == Vec3::Zero() && scale == 1.0) return;
@@ -124,9 +181,8 @@ class MshReader {
   void finish() {
     Mesh& mesh = result_.mesh;
     try {
-      check_elements();
       find_grain_topology(mesh, result_.grain_ids);
-      mesh.topology.check();
+      mesh.topology.check(mesh.domain.face_count());
       check(mesh);
     } catch (const core::InputError& e) {
       fail(e.what());
@@ -155,6 +211,7 @@ class MshReader {
   MshContent content_;
   LengthUnit unit_;
   MeshFile result_;
+  std::vector<int> numbers_;  ///< of the file's nodes in the mesh; -1: not used
 };
 
 }  // namespace

@@ -20,7 +20,9 @@ inline int checkpoint_number(std::string_view name) {
   return number_in(name, "checkpoint-", ".h5");
 }
 /// "mesh-000.msh"
-inline std::string mesh_name(int number) { return numbered("mesh-", number, 3, ".msh"); }
+inline std::string mesh_name(int number, std::string_view extension = ".msh") {
+  return numbered("mesh-", number, 3, extension);
+}
 
 inline constexpr std::string_view results_folder = "results";
 inline constexpr std::string_view checkpoints_folder = "checkpoints";

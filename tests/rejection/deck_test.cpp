@@ -85,6 +85,12 @@ const WrongDeck wrong_decks[] = {
     {"OrientationFileNotUsed", "[orientations]\nfile = \"ori.txt\"\n",
      "deck.toml:2:8: [orientations] file is not used with distribution = \"uniform\"; remove it, "
      "or set distribution = \"file\""},
+    {"TwoMeshFilesOfOneName", "[output]\nmesh_formats = [\"msh\", \"vtu\", \"msh4\"]\n",
+     "deck.toml:2:16: [output] mesh_formats names 2 of Gmsh's formats; must be one of msh, "
+     "msh-binary, msh4 and msh4-binary, and any others"},
+    {"NoMeshFileToRead", "[output]\nmesh_formats = [\"vtu\"]\n",
+     "deck.toml:2:16: [output] mesh_formats names 0 of Gmsh's formats; must be one of msh, "
+     "msh-binary, msh4 and msh4-binary, and any others"},
     {"ComponentsMissing", "[orientations]\ndistribution = \"components\"\n",
      "deck.toml:2:16: [orientations] distribution = \"components\" needs a table "
      "[[orientations.component]] at least"},

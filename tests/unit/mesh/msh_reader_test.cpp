@@ -271,7 +271,7 @@ TEST(MshReader, RefusesWhatHasNoTopologyOfGrains) {
   expect(message([](const Vec3& x) { return centre(x) ? -1 : 0; }),
          "grain 1 has a free facet at (0.333333, 0.333333, ");
   expect(message([](const Vec3& x) { return x[0] > 2 && x[1] > 2 ? -1 : 0; }),
-         "its domain is not a box");
+         "its domain is neither a box");
   expect(message([](const Vec3& x) { return centre(x) ? 1 : 0; }),
          "the face between grains 1 and 2 is closed");
   expect(message([](const Vec3& x) { return axis(x) && x[2] < 1 ? 1 : 0; }),
@@ -284,6 +284,35 @@ TEST(MshReader, RefusesWhatHasNoTopologyOfGrains) {
          "an edge of grain 1 runs from the vertex at (0.419974, 0.419974, 0) back to it");
   expect(message([](const Vec3& x) { return (x.array() < 1).all() || (x.array() > 2).all(); }),
          "grain 2 is not one ball");
+}
+
+TEST(MshReader, ConvexDomainsComeBackWithTheNamesOfTheirSurfaces) {
+  // A slanted prism: the box's x sides lean, and stay named x0 and x1.
+  Mesh mesh = two_slabs();
+  std::vector<Plane> planes;
+  std::vector<std::string> names;
+  for (const DomainFace& f : mesh.domain.faces) {
+    Plane p = f.plane;
+    if (std::abs(p.normal[0]) == 1) p.normal[2] = -0.25 * p.normal[0];
+    planes.push_back(p);
+    names.push_back(f.name);
+  }
+  for (Vec3& x : mesh.nodes) x[0] += 0.25 * x[2];
+  mesh.domain = convex_domain("polyhedron", planes, names);
+  mesh.size = mesh.domain.size;
+  ASSERT_NO_THROW(check(mesh));
+  const MeshFile read = read_text_of(text_of(mesh));
+  ASSERT_NO_THROW(check(read.mesh));
+  EXPECT_FALSE(read.mesh.domain.is_box());
+  EXPECT_NEAR(read.mesh.domain.volume, 2, 1e-12);
+  auto surfaces = read.mesh.domain.surface_names(), expected = mesh.domain.surface_names();
+  std::sort(surfaces.begin(), surfaces.end());
+  EXPECT_EQ(surfaces, expected);
+  for (int n = 0; n < mesh.node_count(); ++n)
+    EXPECT_LT((read.mesh.nodes[n] - mesh.nodes[n]).norm(), 1e-12);
+  expect_same_counts(read.mesh.topology, mesh.topology);
+  for (const auto& face : read.mesh.topology.faces)
+    if (face.domain_face >= 0) EXPECT_LT(face.domain_face, 6);
 }
 
 TEST(MshReader, RefusesElementsInsideOut) {
