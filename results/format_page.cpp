@@ -25,7 +25,7 @@ fails when the two differ.
 | `results.xdmf` | all of them as one time series for ParaView (XDMF Reader or Xdmf3ReaderT) |
 | `results/index.json` | list of the stored states, from which `results.xdmf` is made |
 | `checkpoints/checkpoint-0000.h5`, ... | the last two checkpoints; files of the same type |
-| `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 |
+| `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 (others by `[output] mesh_formats`; formats.md) |
 | `polycrystal.tess` | the regularised tessellation |
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |
