@@ -115,7 +115,7 @@ TEST(Options, TheFirstDeckIsRead) {
 
 /// Values other than the defaults for every key that can have one.
 const char* other_values = R"([polycrystal]
-grains = 31
+grains = 2
 seed = 9223372036854775807
 domain = [1, 2, 3]
 [regularisation]
@@ -167,6 +167,7 @@ max_linear_iterations = 400
 [output]
 at_strains = [0, 0.7]
 checkpoint_every_strain = 0
+mesh_formats = ["msh4", "vtu"]
 )";
 
 /// Keys that have a meaning for some types of load only; loading_test.cpp has them.
@@ -183,7 +184,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   core::Deck deck = core::Deck::from_text(other_values, "deck.toml");
   const Options o = read_options(deck);
   EXPECT_EQ(o.input.length_unit, mesh::LengthUnit::file);
-  EXPECT_EQ(o.polycrystal.grains, 31);
+  EXPECT_EQ(o.polycrystal.grains, 2);
   EXPECT_EQ(o.polycrystal.seed, 9223372036854775807u);
   EXPECT_EQ(o.polycrystal.domain, core::Vec3(1, 2, 3));
   EXPECT_EQ(o.regularisation.max_edge_length, 0.26);
@@ -226,6 +227,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.solver.max_linear_iterations, 400);
   EXPECT_EQ(o.output.at_strains, (std::vector<double>{0, 0.7}));
   EXPECT_EQ(o.output.checkpoint_every_strain, 0);
+  EXPECT_EQ(o.output.mesh_formats, (std::vector<std::string>{"msh4", "vtu"}));
   // The deck above would miss a key that is added later: each declared one is in it, but for those
   // that have a single value or exclude another.
   for (const auto& d : deck.declarations())
