@@ -182,6 +182,14 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
                                   "quality so far. `gmsh-hxt`, `gmsh-delaunay` and `netgen` "
                                   "are followed by our optimiser, the others not: "
                                   "`paper-1` and `paper-2` are those of the paper."});
+  o.mesher_target = t.number(
+      "mesher_target", {.fallback = o.mesher_target,
+                        .min = 0,
+                        .exclusive_min = true,
+                        .max = 1,
+                        .help = "Meshers after the first try a grain only if its worst element so "
+                                "far is below what its surface allows, or O below this share of "
+                                "it; with 1 each mesher tries each grain, as in the paper."});
   o.slide_boundary = t.boolean(
       "slide_boundary", {.fallback = o.slide_boundary,
                          .help = "Whether nodes of grain boundaries slide in their faces and along "

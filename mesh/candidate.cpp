@@ -29,7 +29,7 @@ SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size) {
 }
 
 bool is_good(const SurfaceBounds& bounds, double worst, double O, double target) {
-  return worst >= bounds.floor && O >= target * bounds.O;
+  return target < 1 && worst >= bounds.floor && O >= target * bounds.O;
 }
 
 }  // namespace polyslip::mesh

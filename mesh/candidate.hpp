@@ -14,7 +14,7 @@ struct SurfaceBounds {
 SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size);
 
 /// Whether a mesh whose worst radius ratio is `worst` reaches the floor, and its O `target` times
-/// the bound's. A target of 1 is out of reach.
+/// the bound's. Nothing reaches a target of 1.
 bool is_good(const SurfaceBounds& bounds, double worst, double O, double target);
 
 }  // namespace polyslip::mesh

@@ -52,6 +52,7 @@ struct MeshingOptions {
   double progression_factor = 2.0;           ///< p_l
   int order = 2;
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+  double mesher_target = 0.9;  ///< share of the surface's O from which on no further mesher tries
   double mesher_timeout = 60;  ///< seconds of CPU a grain and candidate
   int jobs = 0;                ///< worker processes, and threads; 0: one a core
   bool slide_boundary = true;  ///< nodes slide in faces and along edges after the grains are meshed
@@ -65,8 +66,8 @@ struct MeshingReport {
   int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                ///< mean over grains of eq. (5)
   double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
-  core::StageTimes times;  ///< of this process: "faces", "meshing" (without the meshers), "sliding",
-                           ///< "assembly"
+  core::StageTimes times;  ///< of this process: "faces", "meshing" (without the meshers),
+                           ///< "sliding", "assembly"
 };
 
 /// How far a stage ("meshing faces", "meshing grains", "sliding nodes", "assembling") is, 0 ... 1.

@@ -8,6 +8,7 @@ Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, cons
   PoolOptions pool_options;
   pool_options.meshers = options.meshers;
   pool_options.element_size = options.element_size;
+  pool_options.target = options.mesher_target;
   pool_options.timeout = options.mesher_timeout;
   pool_options.jobs = options.jobs;
   const GrainMeshers meshers = [&](std::size_t count, const RequestSource& source,

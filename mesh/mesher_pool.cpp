@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "mesh/candidate.hpp"
 #include "mesh/mesher_spawner.hpp"
 #include "mesh/mesher_task.hpp"
 #include "mesh/volume_mesher.hpp"
@@ -36,20 +37,22 @@ struct Candidates {
   bool any = false;
   std::size_t mesher = 0;
   int worst = 0;  // worst radius ratio up to the floor, in steps
+  double least = 0;
   double O = 0;
   VolumeMesh mesh;
   std::vector<std::string> faults;  // [meshers], empty: none
 
   /// Whichever order candidates come in, the same one wins.
   void offer(std::size_t from, VolumeMesh&& candidate, double element_size) {
-    const double least = std::min(min_radius_ratio(candidate), radius_ratio_floor);
-    const int steps = static_cast<int>(std::floor(least / radius_ratio_step));
+    const double ratio = std::min(min_radius_ratio(candidate), radius_ratio_floor);
+    const int steps = static_cast<int>(std::floor(ratio / radius_ratio_step));
     const double quality = mesh_quality_O(candidate, element_size);
     const auto rank = [](int w, double o, std::size_t m) { return std::tuple(-w, -o, m); };
     if (any && rank(worst, O, mesher) <= rank(steps, quality, from)) return;
     any = true;
     mesher = from;
     worst = steps;
+    least = ratio;
     O = quality;
     mesh = std::move(candidate);
   }
@@ -63,6 +66,9 @@ void check_options(const PoolOptions& options) {
                                          fmt::join(known_meshers, ", ")));
   if (!(options.element_size > 0) || !std::isfinite(options.element_size))
     throw core::InputError(fmt::format("element size {} must be positive", options.element_size));
+  if (!(options.target > 0) || options.target > 1)
+    throw core::InputError(
+        fmt::format("mesher target {} must be above 0 and at most 1", options.target));
   if (!(options.timeout > 0) || options.timeout > 1e6)
     throw core::InputError(fmt::format("mesher timeout {} s must be positive", options.timeout));
 }
@@ -82,6 +88,14 @@ std::string surface_fault(const SurfaceMesh& surface) {
     for (const int n : t)
       if (n < 0 || n >= static_cast<int>(surface.nodes.size()))
         return fmt::format("its surface names node {} of {}", n, surface.nodes.size());
+  double six_volumes = 0;
+  const core::Vec3& origin = surface.nodes.front();
+  for (const auto& t : surface.triangles)
+    six_volumes += (surface.nodes[t[0]] - origin)
+                       .cross(surface.nodes[t[1]] - origin)
+                       .dot(surface.nodes[t[2]] - origin);
+  if (!(six_volumes > 0))
+    return fmt::format("its surface is inside out or flat, it encloses {:.3g}", six_volumes / 6);
   return {};
 }
 
@@ -134,6 +148,8 @@ class MesherPool::Stream {
   void close_batch(std::size_t mesher);
   Batch* start_next();
   void start(Batch& batch, std::size_t mesher);
+  double size_of(const GrainRequest& request) const;
+  bool is_good_enough(const GrainRequest& request, const Candidates& candidates) const;
   void pass_on();
   void pass_on(std::size_t mesher, Batch& batch);
 
@@ -238,8 +254,7 @@ Batch* MesherPool::Stream::start_next() {
 
 void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
   const auto take_mesh = [&batch, mesher, this](std::size_t i, VolumeMesh&& mesh) {
-    const double size = batch.requests[i].element_size;
-    batch.candidates[i].offer(mesher, std::move(mesh), size > 0 ? size : options_.element_size);
+    batch.candidates[i].offer(mesher, std::move(mesh), size_of(batch.requests[i]));
   };
   const auto take_fault = [&batch, mesher](std::size_t i, const std::string& why) {
     batch.candidates[i].faults[mesher] = why;
@@ -247,6 +262,16 @@ void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
   batch.task = std::make_unique<MesherTask>(
       batch.requests, 0, batch.places.size(), options_.meshers[mesher], options_.element_size,
       options_.timeout, MesherTask::Sink{take_mesh, take_fault});
+}
+
+double MesherPool::Stream::size_of(const GrainRequest& request) const {
+  return request.element_size > 0 ? request.element_size : options_.element_size;
+}
+
+bool MesherPool::Stream::is_good_enough(const GrainRequest& request,
+                                        const Candidates& candidates) const {
+  return candidates.any && is_good(surface_bounds(request.surface, size_of(request)),
+                                   candidates.least, candidates.O, options_.target);
 }
 
 void MesherPool::Stream::pass_on() {
@@ -264,7 +289,7 @@ void MesherPool::Stream::pass_on() {
 
 void MesherPool::Stream::pass_on(std::size_t mesher, Batch& batch) {
   for (std::size_t i = 0; i < batch.places.size(); ++i) {
-    if (mesher + 1 == lines_.size()) {
+    if (mesher + 1 == lines_.size() || is_good_enough(batch.requests[i], batch.candidates[i])) {
       sink_(batch.places[i], result_of(batch.requests[i], batch.candidates[i], options_));
       continue;
     }

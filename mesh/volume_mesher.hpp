@@ -56,8 +56,11 @@ using ResultSink = std::function<void(std::size_t place, GrainResult&& result)>;
 struct PoolOptions {
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
   double element_size = 0.5;  ///< c_l
-  double timeout = 60;        ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
-  int jobs = 0;               ///< 0: one a core
+  /// Share of the O that a grain's surface allows from which on no further mesher tries the grain
+  /// (mesh/candidate.hpp); 1: every mesher tries every grain.
+  double target = 0.9;
+  double timeout = 60;  ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
+  int jobs = 0;         ///< 0: one a core
 };
 
 /// Worker processes that hold Gmsh and Netgen; the main program never links them. `start` must be
@@ -69,7 +72,8 @@ class MesherPool {
   MesherPool(const MesherPool&) = delete;
   MesherPool& operator=(const MesherPool&) = delete;
 
-  /// Every mesher meshes every grain, and the best mesh of a grain wins: first by its worst radius
+  /// The first mesher meshes every grain, each other those of which no mesh so far is good enough
+  /// (`target`), and the best mesh of a grain wins: first by its worst radius
   /// ratio as far as it is below 0.2 (in steps of 0.02), then by O (eq. 5), then by the order of
   /// the meshers. O alone would take larger elements for a sliver.
   ///

@@ -1,6 +1,7 @@
 #include "mesh/worker/fault_injection.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <limits>
@@ -55,6 +56,8 @@ bool FaultInjection::unoptimised(const std::string& mesher, int grain) const {
 void FaultInjection::after(const std::string& mesher, int grain, VolumeMesh& mesh,
                            int socket) const {
   if (asked(mesher, grain, "nan")) mesh.nodes.back().x() = std::numeric_limits<double>::quiet_NaN();
+  if (asked(mesher, grain, "move"))
+    mesh.nodes.front().x() = std::nextafter(mesh.nodes.front().x(), 1e300);
   if (asked(mesher, grain, "garbage")) protocol::send_all(socket, protocol::Bytes(1000, 'x'));
 }
 

@@ -11,7 +11,8 @@ namespace polyslip::mesh::worker {
 /// The environment variable POLYSLIP_MESHER_FAULT="mesher:grain:kind[,mesher:grain:kind...]" makes
 /// that mesher fail on that grain. Kinds: `crash` (segmentation fault), `hang` (an endless loop),
 /// `throw` (an exception), `nan` (a node that is not a number, unseen by the mesher process),
-/// `garbage` (an answer that is no message). An entry that cannot be read is ignored.
+/// `garbage` (an answer that is no message), `move` (a node of the surface a little off its
+/// place). An entry that cannot be read is ignored.
 /// `unoptimised` is no fault: our own optimiser is left out. "fork:N:refuse" makes the first N
 /// forks of the server fail.
 class FaultInjection {

@@ -187,6 +187,7 @@ int main(int argc, char** argv) {
   app.add_option("--max-edge-length", options.regularisation.max_edge_length, "l_max");
   app.add_option("--progression", options.meshing.progression_factor, "p_l");
   app.add_option("--meshers", options.meshing.meshers)->delimiter(',');
+  app.add_option("--mesher-target", options.meshing.mesher_target, "1: each mesher, each grain");
   app.add_flag("--slide,!--no-slide", options.meshing.slide_boundary,
                "nodes slide in faces and along edges");
   app.add_option("--jobs", options.meshing.jobs);

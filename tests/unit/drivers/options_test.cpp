@@ -131,6 +131,7 @@ element_size = 0.3
 element_size_outer = 0.6
 grain_element_sizes = [0.2, 0.3]
 slide_boundary = false
+mesher_target = 0.8
 progression_factor = 1.5
 meshers = ["netgen"]
 mesher_timeout = 30
@@ -197,6 +198,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.mesh.outer_element_size, 0.6);
   EXPECT_EQ(o.mesh.grain_element_sizes, (std::vector<double>{0.2, 0.3}));
   EXPECT_FALSE(o.mesh.slide_boundary);
+  EXPECT_EQ(o.mesh.mesher_target, 0.8);
   EXPECT_EQ(o.mesh.progression_factor, 1.5);
   EXPECT_EQ(o.mesh.meshers, std::vector<std::string>{"netgen"});
   EXPECT_EQ(o.mesh.mesher_timeout, 30);

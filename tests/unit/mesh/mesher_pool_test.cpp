@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "mesh/candidate.hpp"
 #include "mesh/volume_mesher.hpp"
 #include "surfaces.hpp"
 
@@ -176,6 +177,7 @@ TEST(MesherPool, TakesTheBestCandidate) {
   const auto requests = ellipsoids(6);
   const auto pool = start_pool();
   PoolOptions options;
+  options.target = 1;
   const auto best = pool->mesh(requests, options);
   const auto rank = [](const GrainResult& result) {
     const double worst = std::min(min_radius_ratio(result.mesh), 0.2);
@@ -190,6 +192,50 @@ TEST(MesherPool, TakesTheBestCandidate) {
       EXPECT_EQ(best[i].mesher == name, identical(best[i].mesh, alone[i].mesh));
     }
   }
+}
+
+TEST(MesherPool, TriesFurtherMeshersOnlyWhereTheFirstIsNotGoodEnough) {
+  auto requests = ellipsoids(6);
+  requests[2].surface = test::ellipsoid_surface(2, core::Vec3(0.6, 0.6, 0.1));
+  const auto pool = start_pool();
+  PoolOptions options;
+  options.meshers = {"paper-1", "gmsh-hxt"};
+  const auto both = pool->mesh(requests, options);
+  options.meshers = {"paper-1"};
+  const auto first = pool->mesh(requests, options);
+  int kept = 0, tried = 0;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    const auto bounds = surface_bounds(requests[i].surface, options.element_size);
+    const bool good = is_good(bounds, min_radius_ratio(first[i].mesh), first[i].O, options.target);
+    ASSERT_TRUE(both[i].ok);
+    EXPECT_TRUE(!good || identical(both[i].mesh, first[i].mesh));
+    (good ? kept : tried) += 1;
+    EXPECT_GE(both[i].O, std::min(first[i].O, 0.4));
+  }
+  EXPECT_GT(tried, 0);
+  options.meshers = {"gmsh-hxt", "gmsh-delaunay"};
+  options.target = 0.01;
+  for (const auto& result : pool->mesh(ellipsoids(6), options))
+    EXPECT_EQ(result.mesher, "gmsh-hxt");
+}
+
+TEST(Candidates, AreGoodIfTheyReachWhatTheirSurfaceAllows) {
+  // Equilateral triangles of edge 0.5: O = 1 is allowed.
+  const auto regular = test::ellipsoid_surface(0, core::Vec3(0.4755, 0.4755, 0.4755));
+  const auto bounds = surface_bounds(regular, 0.5);
+  EXPECT_EQ(bounds.floor, 0.2);
+  EXPECT_NEAR(bounds.O, 1, 0.01);
+  EXPECT_LT(surface_bounds(regular, 2.0).O, 0.5);
+  EXPECT_TRUE(is_good(bounds, 0.3, 0.95, 0.9));
+  EXPECT_FALSE(is_good(bounds, 0.1, 0.95, 0.9));
+  EXPECT_FALSE(is_good(bounds, 0.3, 0.85, 0.9));
+  EXPECT_FALSE(is_good(bounds, std::nan(""), 0.95, 0.9));
+  EXPECT_FALSE(is_good(bounds, 0.3, std::nan(""), 0.9));
+  // A needle: the floor goes down with it.
+  SurfaceMesh needle{{{0, 0, 0}, {1, 0, 0}, {1, 0.03, 0}, {1, 0, 0.5}},
+                     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  EXPECT_LT(surface_bounds(needle, 0.5).floor, 0.05);
+  EXPECT_GT(surface_bounds(needle, 0.5).floor, 0.01);
 }
 
 struct Fault {
@@ -226,24 +272,27 @@ INSTANTIATE_TEST_SUITE_P(Pool, InjectedFault,
                                          Fault{"hang", "killed after 2 s of CPU"},
                                          Fault{"throw", "exception: asked to throw"},
                                          Fault{"nan", "is not finite"},
+                                         Fault{"move", "surface node 0 has moved"},
                                          Fault{"garbage", "garbage for an answer (not a header)"}),
                          [](const auto& tested) { return tested.param.kind; });
 
 TEST(MesherPool, AGrainWithoutAnyMeshIsNotOk) {
-  auto requests = ellipsoids(4);
+  auto requests = ellipsoids(5);
+  for (auto& t : requests[4].surface.triangles) std::swap(t[0], t[1]);
   requests[0].surface.nodes[5].x() = std::numeric_limits<double>::quiet_NaN();
   requests[1].surface.triangles.pop_back();  // not closed
   requests[2].surface.triangles[0][0] = 1000;
   PoolOptions options;
   options.timeout = 5;
   const auto results = start_pool()->mesh(requests, options);
-  for (const int i : {0, 1, 2}) {
+  for (const int i : {0, 1, 2, 4}) {
     EXPECT_FALSE(results[i].ok);
     EXPECT_FALSE(results[i].faults.empty());
     EXPECT_TRUE(results[i].mesh.tetrahedra.empty());
   }
   EXPECT_EQ(results[0].faults[0], "grain 1: node 5 of its surface is not finite");
   EXPECT_EQ(results[1].faults.size(), 3U);
+  EXPECT_EQ(results[4].faults[0].find("grain 5: its surface is inside out"), 0U);
   EXPECT_TRUE(results[3].ok);
   EXPECT_TRUE(results[3].faults.empty());
 }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 
+#include "core/error.hpp"
 #include "mesh/geometry.hpp"
 
 namespace polyslip::mesh {
@@ -72,6 +74,33 @@ TEST(PolycrystalMesh, FillsTheBoxOfARegularisedPolycrystal) {
     EXPECT_EQ(grains.back(), 1.0);
     for (const char* stage : {"faces", "meshing", "sliding", "assembly"})
       EXPECT_GT(report.times.seconds(stage), 0) << stage;
+  }
+}
+
+TEST(PolycrystalMesh, SurvivesFaultsOfMeshersAndNamesAGrainThatNoneCanMesh) {
+  const auto geometry = geometry_of(polycrystal(8, 4));
+  MeshingOptions options;
+  options.mesher_timeout = 2;
+  const auto pool_with = [](const char* faults) {
+    setenv("POLYSLIP_MESHER_FAULT", faults, 1);
+    auto pool = start_pool();
+    unsetenv("POLYSLIP_MESHER_FAULT");
+    return pool;
+  };
+  MeshingReport report;
+  const auto some = pool_with(
+      "gmsh-hxt:0:crash,gmsh-hxt:3:hang,gmsh-delaunay:3:nan,gmsh-hxt:5:move,gmsh-hxt:6:garbage");
+  const Mesh mesh = mesh_geometry(geometry, options, Vec3::Ones(), *some, report);
+  ASSERT_NO_THROW(check(mesh));
+  EXPECT_EQ(report.faults.size(), 5u);
+  const auto all = pool_with("gmsh-hxt:3:crash,gmsh-delaunay:3:throw,netgen:3:move");
+  try {
+    mesh_geometry(geometry, options, Vec3::Ones(), *all, report);
+    FAIL() << "no grain is missing";
+  } catch (const core::RecoverableError& error) {
+    EXPECT_EQ(std::string(error.what()).find("grain 4 could not be meshed by any of 3 meshers: "),
+              0u)
+        << error.what();
   }
 }
 
