@@ -6,6 +6,7 @@
 #include <unistd.h>
 #include <cmath>
 
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -221,7 +222,7 @@ TEST(MesherPool, TriesFurtherMeshersOnlyWhereTheFirstIsNotGoodEnough) {
 
 TEST(Candidates, AreGoodIfTheyReachWhatTheirSurfaceAllows) {
   // Equilateral triangles of edge 0.5: O = 1 is allowed.
-  const auto regular = test::ellipsoid_surface(0, core::Vec3(0.4755, 0.4755, 0.4755));
+  const auto regular = test::ellipsoid_surface(0, core::Vec3::Constant(0.5 / std::sqrt(2.0)));
   const auto bounds = surface_bounds(regular, 0.5);
   EXPECT_EQ(bounds.floor, 0.2);
   EXPECT_NEAR(bounds.O, 1, 0.01);
@@ -248,6 +249,7 @@ TEST_P(InjectedFault, CostsOneCandidate) {
   const auto requests = ellipsoids(8);
   PoolOptions options;
   options.meshers = {"gmsh-delaunay", "gmsh-hxt"};
+  options.target = 1;  // both meshers try each grain
   options.timeout = 2;
   const auto pool = start_pool("gmsh-hxt:3:" + GetParam().kind);
   options.jobs = 1;
