@@ -107,6 +107,13 @@ class Deck {
     Vec3 vector3(const std::string& key, const NumbersKey& rule);
     /// Keys that may be left out: no default, no fault.
     std::optional<double> optional_number(const std::string& key, const NumberKey& rule);
+    /// A list of exactly `count` numbers.
+    std::optional<std::vector<double>> optional_numbers(const std::string& key, std::size_t count,
+                                                        const NumbersKey& rule);
+    /// A list of lists of `columns` numbers, one at least.
+    std::optional<std::vector<std::vector<double>>> optional_rows(const std::string& key,
+                                                                  std::size_t columns,
+                                                                  const NumbersKey& rule);
     std::optional<std::string> optional_text(const std::string& key, const TextKey& rule);
     /// A file: a relative path is taken from the deck's folder. The path to open; the resolved deck
     /// holds it absolute, so that it can be run from elsewhere.

@@ -271,6 +271,56 @@ std::vector<double> Deck::Table::numbers(const std::string& key, const NumbersKe
       .value_or(std::vector<double>{});
 }
 
+std::optional<std::vector<double>> Deck::Table::optional_numbers(const std::string& key,
+                                                                 std::size_t count,
+                                                                 const NumbersKey& rule) {
+  const std::string kind = fmt::format("must be a list of {} numbers", count);
+  const auto check = [&](const TomlValue& v) {
+    const auto* list = std::get_if<TomlList>(&v.data);
+    if (list != nullptr && list->size() != count) return wrong_value(key, v, kind);
+    return wrong_list(key, v, kind.c_str(), [&](const TomlList& entries, std::size_t i) {
+      return number_fault(entries[i], rule);
+    });
+  };
+  return read<std::vector<double>>(*deck_,
+                                   {section_, key, fmt::format("{} numbers", count), rule.unit, "",
+                                    bounds_text(rule), rule.help, "", true},
+                                   std::nullopt, check, numbers_of,
+                                   [](const std::vector<double>& x) { return list_text(x); });
+}
+
+std::optional<std::vector<std::vector<double>>> Deck::Table::optional_rows(const std::string& key,
+                                                                           std::size_t columns,
+                                                                           const NumbersKey& rule) {
+  using Rows = std::vector<std::vector<double>>;
+  const std::string kind = fmt::format("must be a list of lists of {} numbers", columns);
+  const auto row_fault = [&](const TomlList& rows, std::size_t i) -> std::string {
+    const auto* row = std::get_if<TomlList>(&rows[i].data);
+    if (row == nullptr || row->size() != columns)
+      return fmt::format("must be a list of {} numbers", columns);
+    for (const TomlValue& entry : *row)
+      if (const std::string fault = number_fault(entry, rule); !fault.empty())
+        return fmt::format("holds {}, which {}", shown(entry), fault);
+    return "";
+  };
+  const auto check = [&](const TomlValue& v) {
+    const auto* list = std::get_if<TomlList>(&v.data);
+    if (list != nullptr && list->empty()) return wrong_value(key, v, kind);
+    return wrong_list(key, v, kind.c_str(), row_fault);
+  };
+  const auto write = [](const Rows& rows) {
+    std::vector<std::string> texts;
+    for (const auto& row : rows) texts.push_back(list_text(row));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+  };
+  return read<Rows>(
+      *deck_,
+      {section_, key, fmt::format("list of lists of {} numbers", columns), rule.unit, "",
+       bounds_text(rule), rule.help, "", true},
+      std::nullopt, check,
+      [](const TomlValue& v) { return list_of<std::vector<double>>(v, numbers_of); }, write);
+}
+
 Vec3 Deck::Table::vector3(const std::string& key, const NumbersKey& rule) {
   const char* kind = "must be a list of three numbers";
   const auto check = [&](const TomlValue& v) {

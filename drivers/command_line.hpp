@@ -13,7 +13,8 @@ enum class Verb { none, run, check, mesh, convert, stats, reference };
 struct Command {
   Verb verb = Verb::none;
   std::string deck;
-  std::string out;  ///< --out; for `run` the default is the deck's name and "-run"
+  std::string picture;  ///< mesh: file of the picture to write too; empty: none
+  std::string out;      ///< --out; for `run` the default is the deck's name and "-run"
   bool overwrite = false;
   std::string restart;  ///< --restart
   int threads = 1;

@@ -1,5 +1,7 @@
 #include "drivers/generate.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <string_view>
 #include <utility>
@@ -8,11 +10,36 @@
 #include "core/parallel.hpp"
 #include "drivers/mesh_files.hpp"
 #include "drivers/orientations.hpp"
+#include "mesh/polycrystal.hpp"
 #include "mesh/tess_writer.hpp"
 #include "results/names.hpp"
 
 namespace polyslip::drivers {
 namespace {
+
+std::string origin_of(const Options& options) {
+  const auto& o = options.polycrystal;
+  const std::string& morphology = mesh::morphology_names()[static_cast<int>(o.morphology)];
+  if (options.input.seeds) return *options.input.seeds;
+  if (mesh::is_regular(o.morphology)) return morphology;
+  return o.morphology == mesh::Morphology::voronoi ? fmt::format("seed {}", o.seed)
+                                                   : fmt::format("{}, seed {}", morphology, o.seed);
+}
+
+void log_domain(const mesh::Tessellation& tessellation, const std::string& origin, core::Log& log) {
+  constexpr double narrow = 0.6;  // half a grain
+  const mesh::Domain& domain = tessellation.domain;
+  log.info("polycrystal: {} grains, {}, {} {:.4g} x {:.4g} x {:.4g} (grains of unit mean volume)",
+           tessellation.topology.cell_count(), origin,
+           domain.is_box() ? "box" : domain.shape + " in a box", domain.size[0], domain.size[1],
+           domain.size[2]);
+  if (!(domain.facet_size > 0)) return;
+  log.info("polycrystal: {} facets, {:.3g} across; their volume exceeds the {}'s by {:.3g} %{}",
+           domain.face_count(), domain.facet_size, domain.shape, 100 * domain.faceting_error,
+           domain.facet_size < narrow
+               ? "; a grain is about 1.24 across: a larger faceting_error gives fewer elements"
+               : "");
+}
 
 /// How far the making of a mesh is, from the shares that its stages have in the time (measured on
 /// 10,000 grains, docs/benchmarks.md).
@@ -54,11 +81,7 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
     return given ? std::move(input.tessellation->tessellation)
                  : mesh::voronoi_tessellation(options.polycrystal);
   }();
-  const core::Vec3& size = tessellation.size;
-  log.info("polycrystal: {} grains, {}, box {:.4g} x {:.4g} x {:.4g} (grains of unit mean volume)",
-           tessellation.topology.cell_count(),
-           given ? *options.input.tessellation : fmt::format("seed {}", options.polycrystal.seed),
-           size[0], size[1], size[2]);
+  log_domain(tessellation, given ? *options.input.tessellation : origin_of(options), log);
   progress("regularising", 0);
   const auto measure = times.measure("regularisation");
   const mesh::RegularisationReport report = mesh::regularise(tessellation, options.regularisation);

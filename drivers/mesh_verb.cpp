@@ -1,6 +1,11 @@
 #include "drivers/mesh_verb.hpp"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+
 #include "core/deck.hpp"
+#include "core/error.hpp"
 #include "core/log.hpp"
 #include "core/timer.hpp"
 #include "core/version.hpp"
@@ -9,16 +14,29 @@
 #include "drivers/options.hpp"
 #include "results/folder.hpp"
 #include "results/names.hpp"
+#include "results/picture.hpp"
 #include "results/summary.hpp"
 
 namespace polyslip::drivers {
 
+namespace {
+
+void check_picture(const std::string& picture) {
+  const auto parent = std::filesystem::path(picture).parent_path();
+  if (!parent.empty() && !std::filesystem::is_directory(parent))
+    throw core::InputError(
+        fmt::format("--picture {}: no such folder as {}", picture, parent.string()));
+}
+
+}  // namespace
+
 void make_mesh(const std::string& deck_path, const std::string& folder, bool overwrite, int jobs,
-               mesh::MesherPool& pool) {
+               mesh::MesherPool& pool, const std::string& picture) {
   const double wall_start = core::wall_seconds();
   core::Deck deck = core::Deck::from_file(deck_path);
   Options options = read_options(deck, Purpose::mesh);
   options.mesh.jobs = jobs;
+  check_picture(picture);
   results::check_deck_place(folder, deck.text(), overwrite);
   Input input = read_input(options);
   results::prepare_run_folder(folder, overwrite);
@@ -44,6 +62,9 @@ void make_mesh(const std::string& deck_path, const std::string& folder, bool ove
   summary.seed = options.polycrystal.seed;
   results::write_summary(path(results::summary_name), summary);
   log.info("mesh: {}", path(results::mesh_name(0)));
+  if (picture.empty()) return;
+  results::write_mesh_picture(picture, mesh, input.orientations, {.width = 640});
+  log.info("picture: {}", picture);
 }
 
 }  // namespace polyslip::drivers

@@ -8,58 +8,13 @@
 #include "drivers/options_sections.hpp"
 #include "drivers/orientations.hpp"
 #include "mesh/mesh_formats.hpp"
+#include "mesh/polycrystal.hpp"
 
 namespace polyslip::drivers {
 
 namespace {
 
 using core::Deck;
-
-/// Whether a key has a meaning beside an input file. One that has none is declared only if the deck
-/// gives it, which is a fault, so that the resolved deck does without.
-bool counts(Deck& deck, const char* section, const char* key, const char* input) {
-  if (!input) return true;
-  if (!deck.given(section, key)) return false;
-  deck.fault(section, key, fmt::format("{} is not used with {}; remove one of them", key, input));
-  return true;
-}
-
-const char* mesh_input(const Deck& deck) {
-  return deck.given("mesh", "file") ? "[mesh] file" : nullptr;
-}
-
-mesh::PolycrystalOptions read_polycrystal(Deck& deck, InputOptions& input) {
-  auto t =
-      deck.table("polycrystal",
-                 "The Voronoi polycrystal. The box is scaled so that grains have unit mean "
-                 "volume, which fixes the unit of every length of the deck and of the results.");
-  mesh::PolycrystalOptions o;
-  const char* made = mesh_input(deck);
-  if (counts(deck, "polycrystal", "file", made))
-    input.tessellation = t.optional_file(
-        "file",
-        {.help =
-             "A tessellation of a box made elsewhere, in Neper's format (`.tess`, version 3 and "
-             "later, `.gz` too), instead of a new one: grains and domain are then the file's. "
-             "It is scaled likewise. A relative path starts at the deck's folder."});
-  if (!made && input.tessellation) made = "[polycrystal] file";
-  if (counts(deck, "polycrystal", "grains", made))
-    o.grains = static_cast<int>(t.integer(
-        "grains", {.fallback = o.grains, .min = 1, .max = 1'000'000, .help = "Number of grains."}));
-  o.seed = static_cast<std::uint64_t>(t.integer(
-      "seed", {.fallback = static_cast<std::int64_t>(o.seed),
-               .min = 0,
-               .help = "Same seed, same polycrystal and same uniform orientations, on any "
-                       "number of threads and ranks."}));
-  if (counts(deck, "polycrystal", "domain", made))
-    o.domain =
-        t.vector3("domain", {.fallback = std::vector<double>{1, 1, 1},
-                             .min = 0,
-                             .exclusive_min = true,
-                             .help = "Shape of the box along x (RD), y (TD) and z (ND); only "
-                                     "the ratios count."});
-  return o;
-}
 
 mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& input) {
   auto t = deck.table("regularisation",
@@ -279,6 +234,7 @@ Options read_options(Deck& deck, Purpose purpose) {
   Options options = declare(deck);
   check_options(deck, options, purpose);
   deck.finish();
+  if (options.input.seeds) mesh::read_seeds(*options.input.seeds, options.polycrystal);
   // Its faults show before any work; of an input file the number of grains is not known yet.
   if (options.orientations.file && !options.input.any()) grain_orientations(options);
   return options;

@@ -28,6 +28,7 @@ struct OrientationOptions {
 struct InputOptions {
   std::optional<std::string> tessellation;  ///< path of a .tess file, [polycrystal] file
   std::optional<std::string> mesh;          ///< path of a .msh file, [mesh] file
+  std::optional<std::string> seeds;         ///< path of a file of seeds, [polycrystal] seeds
   mesh::LengthUnit length_unit = mesh::LengthUnit::grain;
 
   bool any() const { return tessellation || mesh; }

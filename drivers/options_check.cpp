@@ -109,6 +109,7 @@ void check_mesh_formats(Deck& deck, const std::vector<std::string>& formats) {
 
 void check_options(Deck& deck, const Options& options, Purpose purpose) {
   check_input(deck, options);
+  check_polycrystal(deck, options.polycrystal, options.input);
   check_orientations(deck, options.orientations);
   const auto sizes = options.mesh.grain_element_sizes.size();
   if (sizes != 0 && !options.input.any() &&
@@ -120,6 +121,12 @@ void check_options(Deck& deck, const Options& options, Purpose purpose) {
   check_loading(deck, options.loading);
   check_strains(deck, options);
   check_mesh_formats(deck, options.output.mesh_formats);
+  if (purpose == Purpose::run && options.polycrystal.shape != "box")
+    deck.fault(
+        "polycrystal", "shape",
+        fmt::format("shape = \"{}\" is for `polyslip mesh` only: loads act on the faces of a "
+                    "box",
+                    options.polycrystal.shape));
   if (purpose == Purpose::run && options.mesh.order != 2)
     deck.fault("mesh", "order",
                fmt::format("order = {} is for `polyslip mesh` only; a run needs order = 2",

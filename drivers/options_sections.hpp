@@ -8,6 +8,16 @@
 
 namespace polyslip::drivers {
 
+/// Whether a key has a meaning beside an input file. One that has none is declared only if the deck
+/// gives it, which is a fault, so that the resolved deck does without.
+bool counts(core::Deck& deck, const char* section, const char* key, const char* input);
+/// "[mesh] file" if the deck has it, else null.
+const char* mesh_input(const core::Deck& deck);
+
+mesh::PolycrystalOptions read_polycrystal(core::Deck& deck, InputOptions& input);
+/// Notes faults between the keys of [polycrystal]; `seeds` is its file of seeds.
+void check_polycrystal(core::Deck& deck, const mesh::PolycrystalOptions& options,
+                       const InputOptions& input);
 OrientationOptions read_orientation_options(core::Deck& deck, const InputOptions& input);
 material::MaterialOptions read_material(core::Deck& deck);
 solver::LoadingOptions read_loading(core::Deck& deck);

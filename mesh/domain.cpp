@@ -55,8 +55,10 @@ class FacetCutter {
     const auto height = [&](const Corner& c) {
       return planes_[j].normal.dot(c.point) - planes_[j].offset;
     };
-    std::vector<Corner> kept;
     const std::size_t n = corners.size();
+    if (std::all_of(corners.begin(), corners.end(), [&](const Corner& c) { return height(c) <= 0; }))
+      return;
+    std::vector<Corner> kept;
     for (std::size_t k = 0; k < n; ++k) {
       const Corner &a = corners[k], &b = corners[(k + 1) % n];
       const double ha = height(a), hb = height(b);
@@ -211,6 +213,8 @@ class Polyhedron {
     const double given = enclosed();
     if (!(given > 0)) throw core::InputError("the half-spaces enclose no volume");
     const double scale = volume > 0 ? std::cbrt(volume / given) : 1.0;
+    domain_.origin = low;
+    domain_.scale = scale;
     domain_.size = scale * (high - low);
     for (Vec3& x : domain_.vertices)
       for (int i = 0; i < 3; ++i)

@@ -37,6 +37,12 @@ struct Domain {
   std::vector<core::Vec3> vertices;
   core::Vec3 size{0, 0, 0};
   double volume = 0;
+  /// Where its planes were given: x here is scale (x there - origin).
+  core::Vec3 origin{0, 0, 0};
+  double scale = 1;
+  /// Of cylinders and spheres: volume over that of the true body, less one, and the width of a side
+  /// or the root of the mean facet's area.
+  double faceting_error = 0, facet_size = 0;
   /// Periodic directions, with the period size[i]; of a box only.
   std::array<bool, 3> periodic{false, false, false};
 

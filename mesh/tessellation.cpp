@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -38,16 +39,22 @@ void check_sizes(const Tessellation& t) {
   if (t.size != t.domain.size) fail("size and domain disagree");
 }
 
+/// Exactly in a box; in other domains but for the rounding of points put on oblique planes.
+bool inside(const Tessellation& t, const Vec3& x) {
+  if (!x.allFinite()) return false;
+  if (t.domain.is_box()) return x.minCoeff() >= 0 && (t.size - x).minCoeff() >= 0;
+  const double tolerance = on_plane * t.size.maxCoeff();
+  return std::all_of(t.domain.faces.begin(), t.domain.faces.end(), [&](const DomainFace& face) {
+    return face.plane.normal.dot(x) - face.plane.offset <= tolerance;
+  });
+}
+
 void check_vertices(const Tessellation& t) {
   for (std::size_t i = 0; i < t.vertices.size(); ++i) {
     const Vec3& x = t.vertices[i];
-    if (!x.allFinite() || !(x.minCoeff() >= 0) || !((t.size - x).minCoeff() >= 0))
-      fail(fmt::format("vertex {} at ({}, {}, {}) is outside the box", i, x.x(), x.y(), x.z()));
-    if (t.domain.is_box()) continue;
-    for (const DomainFace& face : t.domain.faces)
-      if (!(face.plane.normal.dot(x) - face.plane.offset <= on_plane * t.size.maxCoeff()))
-        fail(
-            fmt::format("vertex {} at ({}, {}, {}) is outside the domain", i, x.x(), x.y(), x.z()));
+    if (!inside(t, x))
+      fail(fmt::format("vertex {} at ({}, {}, {}) is outside the {}", i, x.x(), x.y(), x.z(),
+                       t.domain.shape));
   }
   for (const auto& e : t.topology.edges)
     if (!((t.vertices[e.vertices[0]] - t.vertices[e.vertices[1]]).norm() > 0))

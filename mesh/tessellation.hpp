@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,32 @@
 
 namespace polyslip::mesh {
 
+/// Arrangements of seeds. A regular one has one a cube of its grid, or two (body-centred: truncated
+/// octahedra) or four (face-centred: rhombic dodecahedra).
+enum class Morphology {
+  voronoi,
+  columnar,
+  bamboo,
+  columnar_equiaxed,
+  cubes,
+  truncated_octahedra,
+  rhombic_dodecahedra
+};
+
 /// What a deck asks for in [polycrystal].
 struct PolycrystalOptions {
   int grains = 30;
   std::uint64_t seed = 1;
-  core::Vec3 domain{1, 1, 1};  ///< shape of the box; scaled so that grains have unit mean volume
+  core::Vec3 domain{1, 1, 1};    ///< its extents; scaled so that grains have unit mean volume
+  std::string shape = "box";     ///< "box", "cylinder", "sphere" or "half-spaces"
+  int axis = 2;                  ///< of cylinders, columns and bamboo
+  double faceting_error = 1e-2;  ///< largest excess of the volume of faceted cylinders and spheres
+  std::vector<std::array<double, 4>> half_spaces;  ///< (n, d): n . x <= d
+  Morphology morphology = Morphology::voronoi;
+  core::Vec3 stretch{1, 1, 1};              ///< of the grains; only the ratios count
+  double columnar_share = 0.5;              ///< of the height, of columnar-equiaxed
+  std::optional<std::array<int, 3>> cells;  ///< cubes of a regular grid; then they make the box
+  std::vector<core::Vec3> seeds;            ///< if given, in the unit of `domain` or `half_spaces`
 };
 
 /// What a deck asks for in [regularisation].
@@ -83,8 +105,9 @@ struct RegularisationReport {
 /// Box of the right shape whose volume is the number of grains.
 core::Vec3 box_size(const PolycrystalOptions& options);
 
-/// Poisson-Voronoi tessellation of the box. Faces are numbered in the order of their first cell,
-/// vertices and edges in that of their first face. Throws InputError as box_size. Same seed, same
+/// The polycrystal that a deck asks for: Poisson-Voronoi unless it names another morphology. Faces
+/// are numbered in the order of their first cell, vertices and edges in that of their first face.
+/// InputError if the options describe no body or seeds lie outside it or coincide. Same seed, same
 /// result, on any machine or rank count.
 Tessellation voronoi_tessellation(const PolycrystalOptions& options);
 

@@ -13,7 +13,6 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
-#include "core/random.hpp"
 #include "mesh/tessellation.hpp"
 #include "mesh/voronoi_cells.hpp"
 
@@ -296,18 +295,6 @@ void check_inside(const std::vector<Vec3>& seeds, const Domain& domain) {
                       domain.size.x(), domain.size.y(), domain.size.z()));
 }
 
-/// Points with the same chance everywhere in the domain.
-std::vector<Vec3> random_points(const Domain& domain, int count, std::uint64_t seed) {
-  core::Random random(seed, core::Stream::seeds);
-  std::vector<Vec3> points;
-  while (static_cast<int>(points.size()) < count) {
-    const double x = random.uniform(), y = random.uniform(), z = random.uniform();
-    const Vec3 point = Vec3(x, y, z).cwiseProduct(domain.size);
-    if (inside(point, domain)) points.push_back(point);
-  }
-  return points;
-}
-
 }  // namespace
 
 Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Domain& domain) {
@@ -339,11 +326,6 @@ Tessellation laguerre_tessellation(const std::vector<Vec3>& seeds,
 Tessellation voronoi_tessellation(const std::vector<Vec3>& seeds, const Vec3& size) {
   if (seeds.empty()) throw core::InputError("a tessellation needs at least one seed");
   return voronoi_tessellation(seeds, box_domain(size));
-}
-
-Tessellation voronoi_tessellation(const PolycrystalOptions& options) {
-  const Domain domain = box_domain(box_size(options));
-  return voronoi_tessellation(random_points(domain, options.grains, options.seed), domain);
 }
 
 }  // namespace polyslip::mesh

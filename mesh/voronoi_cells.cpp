@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <voro++/voro++.hh>
 
@@ -16,8 +17,26 @@ using core::Vec3;
 /// The library calls the walls of its box -1 to -6; planes of the domain come after them.
 constexpr int library_walls = 6;
 
-int block_count(double length, double blocks_per_length) {
-  return std::max(1, static_cast<int>(length * blocks_per_length));
+/// Blocks of the library's grid along each axis, for about `optimal_particles` seeds a block. Seeds
+/// may lie in a plane or on a line.
+std::array<int, 3> block_counts(const std::vector<Vec3>& seeds, const Vec3& size) {
+  if (seeds.empty()) return {1, 1, 1};
+  Vec3 low = seeds[0], high = seeds[0];
+  for (const Vec3& x : seeds) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  double extent = 1;
+  int dimensions = 0;
+  std::array<bool, 3> spread{};
+  for (int i = 0; i < 3; ++i) {
+    spread[i] = high[i] - low[i] > 1e-6 * size[i];
+    if (spread[i]) extent *= size[i], ++dimensions;
+  }
+  std::array<int, 3> counts{1, 1, 1};
+  if (dimensions == 0) return counts;
+  const double per_length = std::pow(
+      static_cast<double>(seeds.size()) / (voro::optimal_particles * extent), 1.0 / dimensions);
+  for (int i = 0; i < 3; ++i)
+    if (spread[i]) counts[i] = std::max(1, static_cast<int>(size[i] * per_length));
+  return counts;
 }
 
 SeparateCell read_cell(voro::voronoicell_neighbor& cell, const Vec3& seed) {
@@ -67,9 +86,14 @@ void name_planes(SeparateCell& cell) {
 bool cut_by_planes(voro::voronoicell_neighbor& cell, const Vec3& seed, const Domain& domain) {
   std::vector<double> x;
   cell.vertices(x);  // relative to the seed
+  double reach = 0;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3)
+    reach = std::max(reach, x[i] * x[i] + x[i + 1] * x[i + 1] + x[i + 2] * x[i + 2]);
+  reach = std::sqrt(reach);
   for (int f = 0; f < domain.face_count(); ++f) {
     const Vec3& n = domain.faces[f].plane.normal;
     const double distance = domain.faces[f].plane.offset - n.dot(seed);
+    if (distance > reach) continue;
     double farthest = 0;
     for (std::size_t i = 0; i + 2 < x.size(); i += 3)
       farthest = std::max(farthest, n.x() * x[i] + n.y() * x[i + 1] + n.z() * x[i + 2]);
@@ -84,16 +108,14 @@ bool cut_by_planes(voro::voronoicell_neighbor& cell, const Vec3& seed, const Dom
 
 // The library's box, and how many blocks it is divided into along each axis.
 template <class Container>
-Container make_container(std::size_t seeds, const Domain& domain) {
-  const double n = static_cast<double>(seeds);
-  const double per_length = std::cbrt(n / (voro::optimal_particles * domain.volume));
+Container make_container(const std::vector<Vec3>& seeds, const Domain& domain) {
   // A domain that is no box lies well inside the library's box, whose walls its planes cut off.
   const Vec3& size = domain.size;
   const Vec3 margin = domain.is_box() ? Vec3(Vec3::Zero()) : Vec3(0.1 * size);
+  const auto blocks = block_counts(seeds, size);
   const Vec3 low = -margin, high = size + margin;
-  return Container(low.x(), high.x(), low.y(), high.y(), low.z(), high.z(),
-                   block_count(size.x(), per_length), block_count(size.y(), per_length),
-                   block_count(size.z(), per_length), false, false, false, 8);
+  return Container(low.x(), high.x(), low.y(), high.y(), low.z(), high.z(), blocks[0], blocks[1],
+                   blocks[2], false, false, false, 8);
 }
 
 // Without faces: cells that are empty.
@@ -118,7 +140,7 @@ std::vector<SeparateCell> compute_cells(Container& box, const std::vector<Vec3>&
 
 std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
                                                  const Domain& domain) {
-  auto box = make_container<voro::container>(seeds.size(), domain);
+  auto box = make_container<voro::container>(seeds, domain);
   for (std::size_t i = 0; i < seeds.size(); ++i)
     box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z());
   auto cells = compute_cells(box, seeds, domain);
@@ -133,7 +155,7 @@ std::vector<SeparateCell> separate_voronoi_cells(const std::vector<Vec3>& seeds,
 std::vector<SeparateCell> separate_power_cells(const std::vector<Vec3>& seeds,
                                                const std::vector<double>& weights,
                                                const Domain& domain) {
-  auto box = make_container<voro::container_poly>(seeds.size(), domain);
+  auto box = make_container<voro::container_poly>(seeds, domain);
   const double least = weights.empty() ? 0 : *std::min_element(weights.begin(), weights.end());
   for (std::size_t i = 0; i < seeds.size(); ++i)
     box.put(static_cast<int>(i), seeds[i].x(), seeds[i].y(), seeds[i].z(),

@@ -147,17 +147,16 @@ void draw_boundaries(Canvas& canvas, const Projection& projection, const mesh::M
   }
 }
 
-void draw_polycrystal(Canvas& canvas, const Projection& projection,
-                      const mesh::Snapshot& snapshot) {
-  const auto& mesh = snapshot.mesh;
-  const auto orientations = element_values(snapshot, ElementValue::average).orientation;
+template <class Orientation>
+void draw_polycrystal(Canvas& canvas, const Projection& projection, const mesh::Mesh& mesh,
+                      const Orientation& orientation) {
   const auto behind = elements_behind(mesh);
   std::vector<std::size_t> shown;
   for (std::size_t t = 0; t < behind.size(); ++t)
     if (behind[t] >= 0) shown.push_back(t);
   if (shown.empty()) throw core::InternalError("results/picture: mesh without boundary triangles");
   for (const auto t : shown) {
-    const auto& q = orientations[behind[t]];
+    const core::Quaternion q = orientation(behind[t]);
     const Vec3 colour = q.coeffs().allFinite() ? core::paper_colour(q) : Vec3(Vec3::Constant(160));
     fill_triangle(canvas, projection, triangle_nodes(mesh, t), colour);
   }
@@ -209,13 +208,34 @@ void write_picture(const std::string& path, const mesh::Snapshot& undeformed,
   for (int i = 0; i < 2; ++i) {
     const Projection projection{view, scale, left - scale * extents[i].left,
                                 base + scale * extents[i].low};
-    draw_polycrystal(canvas, projection, *states[i]);
+    const auto orientations = element_values(*states[i], ElementValue::average).orientation;
+    draw_polycrystal(canvas, projection, states[i]->mesh,
+                     [&](int element) { return orientations[element]; });
     const std::string label = fmt::format("e = {:.3g}", states[i]->strain);
     const double centre = left + 0.5 * scale * extents[i].width();
     canvas.text({centre - 0.5 * text_width(label, letter), base + 2.2 * letter, 0}, label, letter);
     left += scale * extents[i].width() + margin;
   }
   draw_axes(canvas, view, margin + 0.35 * axes, foot - 0.5 * axes, axes);
+  canvas.write_png(path);
+}
+
+void write_mesh_picture(const std::string& path, const mesh::Mesh& mesh,
+                        std::span<const core::Quaternion> orientations,
+                        const PictureOptions& options) {
+  const View view(options.azimuth, options.elevation);
+  const Extent extent(mesh, view);
+  const double margin = 0.03 * options.width;
+  const double scale = (options.width - 2 * margin) / std::max(extent.width(), extent.height());
+  if (!std::isfinite(scale) || scale <= 0)
+    throw core::InternalError(fmt::format("results/picture: scale {}", scale));
+  const double height = scale * extent.height();
+  Canvas canvas(static_cast<int>(std::ceil(scale * extent.width() + 2 * margin)),
+                static_cast<int>(std::ceil(height + 2 * margin)));
+  draw_polycrystal(
+      canvas,
+      Projection{view, scale, margin - scale * extent.left, margin + height + scale * extent.low},
+      mesh, [&](int element) { return orientations[mesh.tetrahedron_cell[element]]; });
   canvas.write_png(path);
 }
 

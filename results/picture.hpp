@@ -1,6 +1,7 @@
 #pragma once
-// The undeformed and the deformed polycrystal side by side, coloured by orientation.
+// Pictures of polycrystals, coloured by orientation.
 
+#include <span>
 #include <string>
 
 #include "mesh/snapshot.hpp"
@@ -19,5 +20,11 @@ struct PictureOptions {
 /// dark, element edges light. InputError if the file cannot be written.
 void write_picture(const std::string& path, const mesh::Snapshot& undeformed,
                    const mesh::Snapshot& deformed, const PictureOptions& options = {});
+
+/// Writes a PNG of one mesh, each grain in the colour of its orientation ([grains]), otherwise as
+/// above; `options.width` is that of the picture.
+void write_mesh_picture(const std::string& path, const mesh::Mesh& mesh,
+                        std::span<const core::Quaternion> orientations,
+                        const PictureOptions& options = {});
 
 }  // namespace polyslip::results

@@ -94,7 +94,7 @@ int obey(const Command& command) {
       return check(command);
     case Verb::mesh:
       drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs,
-                         *start_pool());
+                         *start_pool(), command.picture);
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);

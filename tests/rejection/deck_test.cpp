@@ -26,6 +26,24 @@ TEST_P(Deck, IsRejectedByRunMeshAndCheck) {
   expect_rejection(sandbox, {"mesh", "deck.toml", "--out", "out"}, deck.line);
 }
 
+TEST(PolycrystalDeck, ARunTakesABoxOnly) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "[polycrystal]\nshape = \"cylinder\"\n");
+  expect_rejection(sandbox, {"run", "deck.toml", "--out", "out"},
+                   "deck.toml:2:9: [polycrystal] shape = \"cylinder\" is for `polyslip mesh` only: "
+                   "loads act on the faces of a box");
+}
+
+TEST(PolycrystalDeck, ASeedIsRefusedWithItsLine) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "[polycrystal]\nseeds = \"seeds.txt\"\n");
+  sandbox.write("seeds.txt", "0.5 0.5 0.5\n0.5 0.5 1.5\n");
+  for (const char* verb : {"run", "mesh"})
+    expect_rejection(sandbox, {verb, "deck.toml", "--out", "out"},
+                     "seeds.txt:2: seed 2 at (0.5, 0.5, 1.5) lies outside the domain, beyond its "
+                     "face z1");
+}
+
 const WrongDeck wrong_decks[] = {
     {"UnknownKey", "[material]\nh_0 = 4.0\n",
      "deck.toml:2:1: [material] unknown key 'h_0'; did you mean 'h0'?"},
@@ -49,6 +67,49 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:2:21: [polycrystal] domain: entry 3 = 0.0 must be > 0"},
     {"TwoLengths", "[polycrystal]\ndomain = [1.0, 1.0]\n",
      "deck.toml:2:10: [polycrystal] domain = [1.0, 1.0] must be a list of three numbers"},
+    {"UnknownShape", "[polycrystal]\nshape = \"ball\"\n",
+     "deck.toml:2:9: [polycrystal] shape = \"ball\" must be \"box\", \"cylinder\", \"sphere\" or "
+     "\"half-spaces\""},
+    {"FacetsOfABox", "[polycrystal]\nfaceting_error = 0.01\n",
+     "deck.toml:2:18: [polycrystal] faceting_error is not used with shape = \"box\"; remove it"},
+    {"NoFacets", "[polycrystal]\nfaceting_error = 0\nshape = \"sphere\"\n",
+     "deck.toml:2:18: [polycrystal] faceting_error = 0 must be >= 0.001 and <= 0.2"},
+    {"AxisOfABox", "[polycrystal]\naxis = \"x\"\n",
+     "deck.toml:2:8: [polycrystal] axis is not used with shape = \"box\" and morphology = "
+     "\"voronoi\"; remove it"},
+    {"HalfSpaceOfThreeNumbers",
+     "[polycrystal]\nhalf_spaces = [[1, 0, 0]]\nshape = \"half-spaces\"\n",
+     "deck.toml:2:16: [polycrystal] half_spaces: entry 1 = [1, 0, 0] must be a list of 4 numbers"},
+    {"HalfSpacesWithoutEnd",
+     "[polycrystal]\nhalf_spaces = [[-1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 1]]\n"
+     "shape = \"half-spaces\"\n",
+     "deck.toml:2:15: [polycrystal] the half-spaces enclose no body: it has no end along "
+     "half-space "
+     "1 (-1 x + 0 y + 0 z <= 0); add half-spaces"},
+    {"HalfSpacesOfABox", "[polycrystal]\nhalf_spaces = [[1, 0, 0, 1]]\n",
+     "deck.toml:2:15: [polycrystal] half_spaces is not used with shape = \"box\"; remove it"},
+    {"UnknownMorphology", "[polycrystal]\nmorphology = \"bambo\"\n",
+     "deck.toml:2:14: [polycrystal] morphology = \"bambo\" must be \"voronoi\", \"columnar\", "
+     "\"bamboo\", \"columnar-equiaxed\", \"cubes\", \"truncated-octahedra\" or "
+     "\"rhombic-dodecahedra\"; did you mean \"bamboo\"?"},
+    {"FlatStretch", "[polycrystal]\nstretch = [1.0, 0.0, 1.0]\n",
+     "deck.toml:2:17: [polycrystal] stretch: entry 2 = 0.0 must be > 0"},
+    {"ShareOfNoColumns", "[polycrystal]\ncolumnar_share = 0.5\n",
+     "deck.toml:2:18: [polycrystal] columnar_share is not used with morphology = \"voronoi\"; "
+     "remove it"},
+    {"GrainsOfNoGrid", "[polycrystal]\ngrains = 30\nmorphology = \"cubes\"\n",
+     "deck.toml:2:10: [polycrystal] 30 grains do not fill the domain with cubes: give cells = [3, "
+     "3, 3] (27 grains), or others, instead"},
+    {"HalfACube", "[polycrystal]\ncells = [1, 2, 2.5]\nmorphology = \"cubes\"\n",
+     "deck.toml:2:9: [polycrystal] cells: entry 3 = 2.5 must be an integer"},
+    {"TwoCells", "[polycrystal]\ncells = [1, 2]\nmorphology = \"cubes\"\n",
+     "deck.toml:2:9: [polycrystal] cells = [1, 2] must be a list of 3 numbers"},
+    {"CellsAndGrains", "[polycrystal]\ngrains = 8\ncells = [2, 2, 2]\nmorphology = \"cubes\"\n",
+     "deck.toml:2:10: [polycrystal] grains is not used with cells; remove one of them"},
+    {"CellsOfRandomSeeds", "[polycrystal]\ncells = [2, 2, 2]\n",
+     "deck.toml:2:9: [polycrystal] cells is not used with morphology = \"voronoi\"; remove it"},
+    {"NoSeeds", "[polycrystal]\nseeds = \"none.txt\"\n",
+     "deck.toml:2:9: [polycrystal] none.txt: no such file"},
     {"UnknownMesher", "[mesh]\nmeshers = [\"gmsh\"]\n",
      "deck.toml:2:12: [mesh] meshers: entry 1 = \"gmsh\" must be \"gmsh-hxt\", \"gmsh-delaunay\", "
      "\"netgen\", \"gmsh-hxt-plain\", \"gmsh-delaunay-plain\", \"paper-1\" or \"paper-2\""},

@@ -1,0 +1,54 @@
+// The decks in inputs/ that show a morphology: each gives a mesh.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "support/program.hpp"
+
+namespace polyslip::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(Morphologies, EveryDeckGivesAMeshAndAPicture) {
+  int count = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(POLYSLIP_SOURCE_DIR) / "inputs")) {
+    if (text_of(entry.path()).find("polyslip mesh inputs/") == std::string::npos) continue;
+    SCOPED_TRACE(entry.path().filename().string());
+    Sandbox sandbox;
+    std::string deck = text_of(entry.path());
+    const std::string size = "element_size = 0.6";
+    ASSERT_NE(deck.find(size), std::string::npos);
+    deck.replace(deck.find(size), size.size(), "element_size = 1.2");  // quicker
+    sandbox.write("deck.toml", deck);
+    if (deck.find("seeds.txt") != std::string::npos)
+      sandbox.write("seeds.txt", text_of(entry.path().parent_path() / "seeds.txt"));
+    const Outcome outcome = run_polyslip(
+        {"mesh", "deck.toml", "--out", "mesh", "--picture", "mesh.png"}, sandbox.path());
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(fs::file_size(sandbox.path() / "mesh" / "mesh-000.msh"), 10'000u);
+    EXPECT_GT(fs::file_size(sandbox.path() / "mesh.png"), 1'000u);
+    ++count;
+  }
+  EXPECT_GE(count, 13);
+}
+
+TEST(Morphologies, APictureNeedsAFolder) {
+  Sandbox sandbox;
+  sandbox.write("deck.toml", "");
+  expect_rejection(sandbox, {"mesh", "deck.toml", "--out", "out", "--picture", "no/mesh.png"},
+                   "--picture no/mesh.png: no such folder as no");
+}
+
+}  // namespace
+}  // namespace polyslip::tests
