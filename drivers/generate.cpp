@@ -167,6 +167,14 @@ Input read_input(const Options& options) {
   return input;
 }
 
+void require_box(const Options& options, const Input& input) {
+  if (!input.tessellation || input.tessellation->tessellation.domain.is_box()) return;
+  throw core::InputError(fmt::format(
+      "{}: the tessellation fills no box; `polyslip mesh` takes it, but a run does not: "
+      "loads act on the faces of a box",
+      *options.input.tessellation));
+}
+
 mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std::string& folder,
                                 mesh::MesherPool& pool, core::Log& log, core::StageTimes& times) {
   if (options.input.any()) log.info("orientations: {}", orientations_text(options, input));

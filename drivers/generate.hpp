@@ -29,6 +29,9 @@ struct Input {
 /// whose order is not the deck's.
 Input read_input(const Options& options);
 
+/// InputError if a tessellation from a file fills no box: loads are for boxes.
+void require_box(const Options& options, const Input& input);
+
 /// Grows the polycrystal of a deck or takes the input's, regularises and meshes it, or takes the
 /// input's mesh; writes polycrystal.tess (unless the mesh is given) and mesh-000.msh into `folder`.
 /// On one rank. Throws RecoverableError if a grain cannot be meshed.

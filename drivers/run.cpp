@@ -123,6 +123,7 @@ void Run::read_deck() {
     text = core::read_text(file);
     understand();
     if (!request_.restart) input_ = read_input(options_);
+    require_box(options_, input_);
     deck_text_ = request_.restart ? core::read_text(path(results::deck_name)) : text;
   });
   broadcast(comm_, text);
@@ -145,6 +146,7 @@ mesh::Snapshot Run::begin_anew() {
   if (request_.restart) {
     require_unedited_deck(request_.folder);
     input_ = read_input(options_);
+    require_box(options_, input_);
   }
   results::prepare_run_folder(request_.folder, request_.overwrite || request_.restart,
                               request_.restart);

@@ -154,14 +154,23 @@ class TessWriter {
   }
 
   // Ids (from 1) of what lies in all the given faces of the domain.
-  static std::vector<int> lying_on(const DomainFaceLists& lists, std::size_t count,
+  // `on_first`: those on the first of the faces.
+  static std::vector<int> lying_on(const DomainFaceLists& lists, const std::vector<int>& on_first,
                                    const std::vector<int>& domain_faces) {
     std::vector<int> found;
-    for (std::size_t i = 0; i < count; ++i)
+    for (const int i : on_first)
       if (std::all_of(domain_faces.begin(), domain_faces.end(), [&](int d) {
             return std::binary_search(lists[i].begin(), lists[i].end(), d);
           }))
-        found.push_back(static_cast<int>(i) + 1);
+        found.push_back(i + 1);
+    return found;
+  }
+
+  // For each face of the domain, what lies in it, ascending.
+  std::vector<std::vector<int>> by_face(const DomainFaceLists& lists, std::size_t count) const {
+    std::vector<std::vector<int>> found(domain_.faces.size());
+    for (std::size_t i = 0; i < count; ++i)
+      for (const int d : lists[i]) found[d].push_back(static_cast<int>(i));
     return found;
   }
 
@@ -200,6 +209,7 @@ class TessWriter {
 
   void domain_vertices() {
     const auto on_faces = domain_faces_of_vertices(tess_.topology);
+    const auto in_face = by_face(on_faces, tess_.vertices.size());
     std::vector<std::vector<int>> around(domain_.vertices.size());
     for (int d = 0; d < domain_.face_count(); ++d)
       for (const int v : domain_.faces[d].loop) around[v].push_back(d);
@@ -208,19 +218,20 @@ class TessWriter {
       add("   {}", v + 1);
       point(domain_.vertices[v]);
       add(" {}\n", label(around[v]));
-      list("      ", lying_on(on_faces, tess_.vertices.size(), around[v]));
+      list("      ", lying_on(on_faces, in_face[around[v][0]], around[v]));
     }
   }
 
   void domain_edges() {
     const auto on_faces = domain_faces_of_edges(tess_.topology);
+    const auto in_face = by_face(on_faces, tess_.topology.edges.size());
     add("  *edge\n   {}\n", domain_.edges.size());
     int id = 0;
     for (const auto& e : domain_.edges) {
       const std::vector<int> faces(e.faces.begin(), e.faces.end());
       add("   {} 2 {} {}\n     line\n     0\n     {}\n", ++id, e.vertices[0] + 1, e.vertices[1] + 1,
           label(faces));
-      list("     ", lying_on(on_faces, tess_.topology.edges.size(), faces));
+      list("     ", lying_on(on_faces, in_face[faces[0]], faces));
     }
   }
 

@@ -93,8 +93,8 @@ int obey(const Command& command) {
     case Verb::check:
       return check(command);
     case Verb::mesh:
-      drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs,
-                         *start_pool(), command.picture);
+      drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs, *start_pool(),
+                         command.picture);
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);

@@ -174,11 +174,11 @@ TEST(Polycrystal, ColumnsEndWhereEquiaxedGrainsBegin) {
 
 TEST(Polycrystal, RegularSeedsGiveTheirPolyhedra) {
   PolycrystalOptions o;
-  o.cells = {{5, 5, 5}};
+  o.cells = {{6, 6, 6}};
   const std::map<Morphology, std::array<int, 2>> cases{
-      {Morphology::cubes, {125, 6}},
-      {Morphology::truncated_octahedra, {250, 14}},
-      {Morphology::rhombic_dodecahedra, {500, 12}}};
+      {Morphology::cubes, {216, 6}},
+      {Morphology::truncated_octahedra, {432, 14}},
+      {Morphology::rhombic_dodecahedra, {864, 12}}};
   for (const auto& [morphology, expected] : cases) {
     o.morphology = morphology;
     EXPECT_EQ(regular_grain_count(o), expected[0]);
