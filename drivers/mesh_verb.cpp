@@ -63,7 +63,7 @@ void make_mesh(const std::string& deck_path, const std::string& folder, bool ove
   results::write_summary(path(results::summary_name), summary);
   log.info("mesh: {}", path(results::mesh_name(0)));
   if (picture.empty()) return;
-  results::write_mesh_picture(picture, mesh, input.orientations, {.width = 640});
+  results::write_mesh_picture(picture, mesh, input.orientations, {.width = 520});
   log.info("picture: {}", picture);
 }
 
