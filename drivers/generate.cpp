@@ -72,14 +72,30 @@ class Progress {
   core::Log& log_;
 };
 
+mesh::Tessellation grow_laguerre(const mesh::PolycrystalOptions& options, core::Log& log,
+                                 const Progress& progress) {
+  mesh::LaguerreReport r;
+  mesh::Tessellation tessellation = mesh::laguerre_tessellation(
+      options, r, [&progress](double done) { progress("tessellating", done); });
+  log.info(
+      "polycrystal: equivalent diameters {:.4g}, standard deviation {:.3g} of it; sphericities "
+      "{:.3f}, standard deviation {:.3f}; Kolmogorov-Smirnov distances to those asked for {:.4f} "
+      "and {:.4f}; {} iterations",
+      r.diameter_mean, r.diameter_deviation, r.sphericity_mean, r.sphericity_deviation,
+      r.size_distance, r.sphericity_distance, r.iterations);
+  return tessellation;
+}
+
 mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
                         const Progress& progress, core::StageTimes& times) {
   const bool given = input.tessellation.has_value();
   mesh::Tessellation tessellation = [&] {
     progress("tessellating", 0);
     const auto measure = times.measure("polycrystal");
-    return given ? std::move(input.tessellation->tessellation)
-                 : mesh::voronoi_tessellation(options.polycrystal);
+    if (given) return std::move(input.tessellation->tessellation);
+    if (mesh::is_laguerre(options.polycrystal.morphology))
+      return grow_laguerre(options.polycrystal, log, progress);
+    return mesh::voronoi_tessellation(options.polycrystal);
   }();
   log_domain(tessellation, given ? *options.input.tessellation : origin_of(options), log);
   progress("regularising", 0);

@@ -59,6 +59,27 @@ void read_shape(Deck& deck, Deck::Table& t, mesh::PolycrystalOptions& o) {
     for (const auto& p : *planes) o.half_spaces.push_back({p[0], p[1], p[2], p[3]});
 }
 
+void read_distributions(Deck::Table& t, mesh::GrainDistributions& o) {
+  const auto read = [&t](const char* key, double& value, double least, double largest,
+                         const char* help) {
+    const auto given = t.optional_number(
+        key,
+        {.min = least, .exclusive_min = true, .max = largest, .exclusive_max = true, .help = help});
+    if (given) value = *given;
+  };
+  read("diameter_deviation", o.diameter_deviation, 0, 1,
+       "With morphology = \"laguerre\": standard deviation of the grains' equivalent diameters, "
+       "lognormal, over their mean, which follows from the unit mean volume; 0.35 if it is not "
+       "given.");
+  read("sphericity_mean", o.sphericity_mean, 0.5, 0.95,
+       "With morphology = \"laguerre\": mean sphericity (surface of the sphere of a grain's volume "
+       "over the grain's surface); 0.855 if it is not given. One minus the sphericity is "
+       "lognormal.");
+  read("sphericity_deviation", o.sphericity_deviation, 0, 0.2,
+       "With morphology = \"laguerre\": standard deviation of the sphericity; 0.03 if it is not "
+       "given.");
+}
+
 void read_morphology(Deck::Table& t, mesh::PolycrystalOptions& o) {
   const auto& names = mesh::morphology_names();
   const std::string name = t.text(
@@ -66,7 +87,12 @@ void read_morphology(Deck::Table& t, mesh::PolycrystalOptions& o) {
       {.fallback = names[static_cast<int>(o.morphology)],
        .choices = names,
        .help = "Voronoi cells of random seeds; columns along the axis; slabs across it; columns up "
-               "to a share of the height and equiaxed grains above; or cells of regular seeds."});
+               "to a share of the height and equiaxed grains above; cells of regular seeds; or "
+               "Laguerre "
+               "cells with asked distributions of grain size and sphericity (\"laguerre\": "
+               "diameter_deviation, sphericity_mean and sphericity_deviation; \"grain-growth\": "
+               "those of normal grain growth, 0.35, 0.855 and "
+               "0.03). The log tells the distributions that were reached."});
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) o.morphology = static_cast<Morphology>(at - names.begin());
   o.stretch = t.vector3("stretch",
@@ -85,6 +111,7 @@ void read_morphology(Deck::Table& t, mesh::PolycrystalOptions& o) {
                "columns take, from the low side of the axis; 0.5 if it is not "
                "given."});
   if (share) o.columnar_share = *share;
+  read_distributions(t, o.distributions);
 }
 
 void read_cells(Deck& deck, Deck::Table& t, mesh::PolycrystalOptions& o) {
@@ -131,6 +158,9 @@ void check_use(Deck& deck, const mesh::PolycrystalOptions& o, const InputOptions
   unused(deck, "faceting_error", o.shape == "cylinder" || o.shape == "sphere", shape);
   unused(deck, "half_spaces", o.shape == "half-spaces", shape);
   unused(deck, "columnar_share", o.morphology == Morphology::columnar_equiaxed, morphology);
+  for (const char* key : {"diameter_deviation", "sphericity_mean", "sphericity_deviation"})
+    unused(deck, key, o.morphology == Morphology::laguerre, morphology);
+  unused(deck, "stretch", !mesh::is_laguerre(o.morphology), morphology);
   unused(deck, "cells", mesh::is_regular(o.morphology), morphology);
   if (input.seeds && o.morphology != Morphology::voronoi)
     deck.fault(section, "morphology",
@@ -181,7 +211,8 @@ mesh::PolycrystalOptions read_polycrystal(Deck& deck, InputOptions& input) {
   if (made) {
     bool given = false;
     for (const char* key : {"shape", "domain", "axis", "faceting_error", "half_spaces",
-                            "morphology", "stretch", "columnar_share", "cells", "seeds"})
+                            "morphology", "stretch", "columnar_share", "cells", "seeds",
+                            "diameter_deviation", "sphericity_mean", "sphericity_deviation"})
       if (deck.given(section, key)) {
         deck.fault(section, key,
                    fmt::format("{} is not used with {}; remove one of them", key, made));
@@ -209,6 +240,8 @@ void check_polycrystal(Deck& deck, const mesh::PolycrystalOptions& o, const Inpu
       deck.fault(section, "seeds", fmt::format("{}: no such file", *input.seeds));
     return;
   }
+  if (mesh::is_laguerre(o.morphology) && o.grains < 2)
+    deck.fault(section, "grains", "grains: a Laguerre polycrystal needs 2 grains or more");
   const char* key = o.shape == "half-spaces"         ? "half_spaces"
                     : mesh::is_regular(o.morphology) ? (o.cells ? "cells" : "grains")
                                                      : "domain";

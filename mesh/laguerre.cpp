@@ -31,7 +31,7 @@ constexpr double relaxation = 0.7;    // share of the way to the centroid
 double volume_of_diameter(double d) { return std::numbers::pi / 6 * d * d * d; }
 double diameter_of_volume(double v) { return std::cbrt(6 * v / std::numbers::pi); }
 
-void check_options(int grains, const LaguerreOptions& o) {
+void check_options(int grains, const GrainDistributions& o) {
   if (grains < 2) throw core::InputError("a Laguerre polycrystal needs two grains or more");
   if (!(o.diameter_deviation > 0 && o.diameter_deviation <= 1))
     throw core::InputError(fmt::format("diameter_deviation = {}: must be above 0 and at most 1",
@@ -60,8 +60,9 @@ class Search {
   Search(int grains, const LaguerreOptions& options, const Domain& domain)
       : options_(options),
         domain_(domain),
-        diameters_(asked_diameters(options.diameter_deviation)),
-        lack_(1 - options.sphericity_mean, options.sphericity_deviation),
+        diameters_(asked_diameters(options.distributions.diameter_deviation)),
+        lack_(1 - options.distributions.sphericity_mean,
+              options.distributions.sphericity_deviation),
         random_(options.seed, core::Stream::seeds) {
     share_out_volumes(grains);
     scatter_seeds(grains);
@@ -74,7 +75,7 @@ class Search {
       throw core::InputError(fmt::format(
           "no Laguerre tessellation with diameter_deviation = {} was found for {} grains: try "
           "another seed or a smaller deviation",
-          options_.diameter_deviation, targets_.size()));
+          options_.distributions.diameter_deviation, targets_.size()));
     core::LimitedMemoryOptions limits;
     limits.max_iterations = options_.max_iterations;
     PowerSeeds tried = seeds_;
@@ -186,7 +187,7 @@ class Search {
     std::sort(order.begin(), order.end());
     derivative.assign(n, 0);
     double sum = 0;
-    const double count = static_cast<double>(n), sd = options_.sphericity_deviation;
+    const double count = static_cast<double>(n), sd = options_.distributions.sphericity_deviation;
     for (std::size_t k = 0; k < n; ++k) {
       const auto [s, i] = order[k];
       const double rank = middle_of_rank(k, n);
@@ -259,7 +260,7 @@ class Search {
 
 PowerSeeds laguerre_seeds(int grains, const LaguerreOptions& options, const Domain& domain,
                           LaguerreReport& report, const std::function<void(double)>& progress) {
-  check_options(grains, options);
+  check_options(grains, options.distributions);
   report = {};
   return Search(grains, options, domain).run(report, progress);
 }

@@ -5,19 +5,13 @@
 #include <functional>
 
 #include "mesh/power_diagram.hpp"
+#include "mesh/tessellation.hpp"
 
 namespace polyslip::mesh {
 
-/// What a deck asks for. Equivalent diameters are lognormal; one minus the sphericity is lognormal,
-/// so that sphericities have the given mean and standard deviation. The defaults are those of
-/// normal grain growth.
 struct LaguerreOptions {
   std::uint64_t seed = 1;
-  /// Standard deviation of the grains' equivalent diameters over their mean; the mean follows from
-  /// the unit mean volume.
-  double diameter_deviation = 0.35;
-  double sphericity_mean = 0.855;
-  double sphericity_deviation = 0.03;
+  GrainDistributions distributions;
   int max_iterations = 150;
 };
 

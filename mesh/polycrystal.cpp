@@ -201,7 +201,9 @@ const std::vector<std::string>& morphology_names() {
                                               "columnar-equiaxed",
                                               "cubes",
                                               "truncated-octahedra",
-                                              "rhombic-dodecahedra"};
+                                              "rhombic-dodecahedra",
+                                              "laguerre",
+                                              "grain-growth"};
   return names;
 }
 
@@ -259,6 +261,19 @@ Domain polycrystal_domain(const PolycrystalOptions& options) {
   Domain box = box_domain(size);
   box.scale = size[0] / o.domain[0];
   return box;
+}
+
+bool is_laguerre(Morphology morphology) {
+  return morphology == Morphology::laguerre || morphology == Morphology::grain_growth;
+}
+
+Tessellation laguerre_tessellation(const PolycrystalOptions& options, LaguerreReport& report,
+                                   const std::function<void(double)>& progress) {
+  LaguerreOptions o{.seed = options.seed};
+  if (options.morphology == Morphology::laguerre) o.distributions = options.distributions;
+  const Domain domain = polycrystal_domain(options);
+  const PowerSeeds seeds = laguerre_seeds(options.grains, o, domain, report, progress);
+  return laguerre_tessellation(seeds.positions, seeds.weights, domain);
 }
 
 Tessellation voronoi_tessellation(const PolycrystalOptions& options) {

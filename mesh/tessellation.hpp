@@ -22,7 +22,20 @@ enum class Morphology {
   columnar_equiaxed,
   cubes,
   truncated_octahedra,
-  rhombic_dodecahedra
+  rhombic_dodecahedra,
+  laguerre,
+  grain_growth  ///< laguerre with the distributions of normal grain growth
+};
+
+/// Distributions that a Laguerre polycrystal is to have. Equivalent diameters are lognormal; one
+/// minus the sphericity is lognormal, so that sphericities have the given mean and standard
+/// deviation. The defaults are those of normal grain growth.
+struct GrainDistributions {
+  /// Standard deviation of the grains' equivalent diameters over their mean; the mean follows from
+  /// the unit mean volume.
+  double diameter_deviation = 0.35;
+  double sphericity_mean = 0.855;
+  double sphericity_deviation = 0.03;
 };
 
 /// What a deck asks for in [polycrystal].
@@ -38,6 +51,7 @@ struct PolycrystalOptions {
   core::Vec3 stretch{1, 1, 1};              ///< of the grains; only the ratios count
   double columnar_share = 0.5;              ///< of the height, of columnar-equiaxed
   std::optional<std::array<int, 3>> cells;  ///< cubes of a regular grid; then they make the box
+  GrainDistributions distributions;         ///< of laguerre
   std::vector<core::Vec3> seeds;            ///< if given, in the unit of `domain` or `half_spaces`
 };
 

@@ -28,22 +28,23 @@ void expect_distributions(int grains, const mesh::LaguerreOptions& options) {
   ASSERT_EQ(static_cast<int>(diameters.size()), grains);
   double mean = 0;
   for (const double d : diameters) mean += d / grains;
-  const core::Lognormal size(mean, options.diameter_deviation * mean);
-  const core::Lognormal lack(1 - options.sphericity_mean, options.sphericity_deviation);
+  const core::Lognormal size(mean, options.distributions.diameter_deviation * mean);
+  const core::Lognormal lack(1 - options.distributions.sphericity_mean,
+                             options.distributions.sphericity_deviation);
   EXPECT_LE(core::kolmogorov_smirnov(diameters, [&](double x) { return size.cdf(x); }), 0.02);
   const double distance = core::kolmogorov_smirnov(lacks, [&](double x) { return lack.cdf(x); });
   EXPECT_LE(distance, 0.05);
   EXPECT_NEAR(report.sphericity_distance, distance, 1e-12);
-  EXPECT_NEAR(report.diameter_deviation, options.diameter_deviation, 0.01);
+  EXPECT_NEAR(report.diameter_deviation, options.distributions.diameter_deviation, 0.01);
 }
 
 TEST(Laguerre, ReachesNormalGrainGrowth) { expect_distributions(1000, {.seed = 1}); }
 
 TEST(Laguerre, ReachesNarrowSizes) {
   expect_distributions(1000, {.seed = 2,
-                              .diameter_deviation = 0.15,
-                              .sphericity_mean = 0.87,
-                              .sphericity_deviation = 0.025});
+                              .distributions = {.diameter_deviation = 0.15,
+                                                .sphericity_mean = 0.87,
+                                                .sphericity_deviation = 0.025}});
 }
 
 TEST(Laguerre, TessellationIsRegularisedLikeAnyOther) {
@@ -74,9 +75,11 @@ TEST(Laguerre, RefusesWhatCannotBe) {
   const mesh::Domain domain = mesh::box_domain({1, 1, 1});
   mesh::LaguerreReport report;
   EXPECT_THROW(mesh::laguerre_seeds(1, {}, domain, report), core::InputError);
-  EXPECT_THROW(mesh::laguerre_seeds(8, {.diameter_deviation = 0}, domain, report),
+  EXPECT_THROW(
+      mesh::laguerre_seeds(8, {.distributions = {.diameter_deviation = 0}}, domain, report),
+      core::InputError);
+  EXPECT_THROW(mesh::laguerre_seeds(8, {.distributions = {.sphericity_mean = 1}}, domain, report),
                core::InputError);
-  EXPECT_THROW(mesh::laguerre_seeds(8, {.sphericity_mean = 1}, domain, report), core::InputError);
 }
 
 }  // namespace
