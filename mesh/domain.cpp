@@ -56,7 +56,8 @@ class FacetCutter {
       return planes_[j].normal.dot(c.point) - planes_[j].offset;
     };
     const std::size_t n = corners.size();
-    if (std::all_of(corners.begin(), corners.end(), [&](const Corner& c) { return height(c) <= 0; }))
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](const Corner& c) { return height(c) <= 0; }))
       return;
     std::vector<Corner> kept;
     for (std::size_t k = 0; k < n; ++k) {

@@ -11,7 +11,7 @@ namespace polyslip::mesh {
 
 struct LaguerreOptions {
   std::uint64_t seed = 1;
-  GrainDistributions distributions;
+  GrainDistributions distributions{};
   int max_iterations = 150;
 };
 

@@ -269,7 +269,8 @@ bool is_laguerre(Morphology morphology) {
 
 Tessellation laguerre_tessellation(const PolycrystalOptions& options, LaguerreReport& report,
                                    const std::function<void(double)>& progress) {
-  LaguerreOptions o{.seed = options.seed};
+  LaguerreOptions o;
+  o.seed = options.seed;
   if (options.morphology == Morphology::laguerre) o.distributions = options.distributions;
   const Domain domain = polycrystal_domain(options);
   const PowerSeeds seeds = laguerre_seeds(options.grains, o, domain, report, progress);

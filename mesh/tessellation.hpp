@@ -46,13 +46,13 @@ struct PolycrystalOptions {
   std::string shape = "box";     ///< "box", "cylinder", "sphere" or "half-spaces"
   int axis = 2;                  ///< of cylinders, columns and bamboo
   double faceting_error = 1e-2;  ///< largest excess of the volume of faceted cylinders and spheres
-  std::vector<std::array<double, 4>> half_spaces;  ///< (n, d): n . x <= d
+  std::vector<std::array<double, 4>> half_spaces{};  ///< (n, d): n . x <= d
   Morphology morphology = Morphology::voronoi;
-  core::Vec3 stretch{1, 1, 1};              ///< of the grains; only the ratios count
-  double columnar_share = 0.5;              ///< of the height, of columnar-equiaxed
-  std::optional<std::array<int, 3>> cells;  ///< cubes of a regular grid; then they make the box
-  GrainDistributions distributions;         ///< of laguerre
-  std::vector<core::Vec3> seeds;            ///< if given, in the unit of `domain` or `half_spaces`
+  core::Vec3 stretch{1, 1, 1};                ///< of the grains; only the ratios count
+  double columnar_share = 0.5;                ///< of the height, of columnar-equiaxed
+  std::optional<std::array<int, 3>> cells{};  ///< cubes of a regular grid; then they make the box
+  GrainDistributions distributions{};         ///< of laguerre
+  std::vector<core::Vec3> seeds{};  ///< if given, in the unit of `domain` or `half_spaces`
 };
 
 /// What a deck asks for in [regularisation].

@@ -91,7 +91,8 @@ TEST_F(Outputs, MacroCsvHasItsColumns) {
   ASSERT_GT(lines.size(), 10u);
   EXPECT_EQ(lines[0],
             "strain,time,step_size,sxx,syy,szz,syz,szx,sxy,fx_x1,fy_y1,fz_z1,newton_iterations,"
-            "linear_iterations,remeshed,load_strain,load_stress,fx_x0,fy_x0,fz_x0,fy_x1,fz_x1,fx_y0,fy_y0,"
+            "linear_iterations,remeshed,load_strain,load_stress,fx_x0,fy_x0,fz_x0,fy_x1,fz_x1,fx_"
+            "y0,fy_y0,"
             "fz_y0,fx_y1,fz_y1,fx_z0,fy_z0,fz_z0,fx_z1,fy_z1");
   int remeshed = 0;
   double before = 0, last = 0;

@@ -99,7 +99,7 @@ Errors solve(double element_size, double bulk, bool mixed, double kappa = 0) {
   old.p.assign(local.elements.size(), 0);
   old.volume_ratio.assign(local.elements.size() * 4, 1);
   old.state.assign(local.elements.size() * 24, 0);
-  NewtonProblem step{old, 1.0, amplitude, kappa, std::vector<double>(old.x.size(), 0)};
+  NewtonProblem step{old, 1.0, amplitude, kappa, 0, std::vector<double>(old.x.size(), 0)};
   problem.for_each_point([&](int e, const auto& shape, const Vec3& x, double weight) {
     const Vec3 b = exact.body_force(x);
     for (int a = 0; a < 10; ++a)

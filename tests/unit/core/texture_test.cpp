@@ -54,7 +54,7 @@ TEST(Texture, NamesMeanWhatTablesSay) {
       const Quaternion q = miller_orientation(named.plane, named.direction);
       // Tables give any one of the four variants of orthorhombic sample symmetry.
       for (const Quaternion& turn : {Quaternion(1, 0, 0, 0), Quaternion(0, 1, 0, 0),
-                                    Quaternion(0, 0, 1, 0), Quaternion(0, 0, 0, 1)})
+                                     Quaternion(0, 0, 1, 0), Quaternion(0, 0, 0, 1)})
         least = std::min(least, disorientation_angle(turn * q, from_bunge(bunge)) / degree);
     }
     return least;

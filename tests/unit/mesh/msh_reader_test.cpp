@@ -311,8 +311,7 @@ TEST(MshReader, ConvexDomainsComeBackWithTheNamesOfTheirSurfaces) {
   for (int n = 0; n < mesh.node_count(); ++n)
     EXPECT_LT((read.mesh.nodes[n] - mesh.nodes[n]).norm(), 1e-12);
   expect_same_counts(read.mesh.topology, mesh.topology);
-  for (const auto& face : read.mesh.topology.faces)
-    EXPECT_LT(face.domain_face, 6);
+  for (const auto& face : read.mesh.topology.faces) EXPECT_LT(face.domain_face, 6);
 }
 
 TEST(MshReader, RefusesElementsInsideOut) {

@@ -97,7 +97,9 @@ TEST(Polycrystal, ASphereIsWithinItsError) {
       shortest = std::min(shortest, length);
       sum += length / static_cast<double>(d.edges.size());
     }
-    if (extents == Vec3(1, 1, 1)) EXPECT_GT(shortest, 0.6 * sum);
+    if (extents == Vec3(1, 1, 1)) {
+      EXPECT_GT(shortest, 0.6 * sum);
+    }
     expect_sound(o, 60);
   }
 }
@@ -129,7 +131,9 @@ TEST(Polycrystal, ColumnsRunFromEndToEnd) {
       const auto& face = t.topology.faces[f];
       if (face.domain_face / 2 == axis && face.domain_face >= 0) ++ends[face.cells[0]];
       EXPECT_LT(std::abs(std::abs(t.face_planes[f].normal[axis]) - 0.5), 0.5 + 1e-12);
-      if (face.domain_face < 0) EXPECT_NEAR(t.face_planes[f].normal[axis], 0, 1e-12);
+      if (face.domain_face < 0) {
+        EXPECT_NEAR(t.face_planes[f].normal[axis], 0, 1e-12);
+      }
     }
     EXPECT_EQ(ends, std::vector<int>(40, 2));
   }

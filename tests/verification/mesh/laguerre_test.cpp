@@ -38,7 +38,9 @@ void expect_distributions(int grains, const mesh::LaguerreOptions& options) {
   EXPECT_NEAR(report.diameter_deviation, options.distributions.diameter_deviation, 0.01);
 }
 
-TEST(Laguerre, ReachesNormalGrainGrowth) { expect_distributions(1000, {.seed = 1}); }
+TEST(Laguerre, ReachesNormalGrainGrowth) {
+  expect_distributions(1000, {.seed = 1, .distributions = {}});
+}
 
 TEST(Laguerre, ReachesNarrowSizes) {
   expect_distributions(1000, {.seed = 2,
@@ -50,7 +52,8 @@ TEST(Laguerre, ReachesNarrowSizes) {
 TEST(Laguerre, TessellationIsRegularisedLikeAnyOther) {
   const mesh::Domain domain = mesh::box_domain({4, 4, 4});
   mesh::LaguerreReport report;
-  const auto seeds = mesh::laguerre_seeds(64, {.seed = 3, .max_iterations = 20}, domain, report);
+  const auto seeds = mesh::laguerre_seeds(
+      64, {.seed = 3, .distributions = {}, .max_iterations = 20}, domain, report);
   auto t = mesh::laguerre_tessellation(seeds.positions, seeds.weights, domain);
   t.check();
   const auto cells = mesh::power_cells(seeds, domain);
@@ -64,7 +67,7 @@ TEST(Laguerre, TessellationIsRegularisedLikeAnyOther) {
 TEST(Laguerre, SameSeedSamePolycrystal) {
   const mesh::Domain domain = mesh::box_domain({3, 3, 3});
   mesh::LaguerreReport report;
-  const mesh::LaguerreOptions options{.seed = 5, .max_iterations = 10};
+  const mesh::LaguerreOptions options{.seed = 5, .distributions = {}, .max_iterations = 10};
   const auto a = mesh::laguerre_seeds(27, options, domain, report);
   const auto b = mesh::laguerre_seeds(27, options, domain, report);
   EXPECT_EQ(a.weights, b.weights);
