@@ -41,8 +41,8 @@ void log_domain(const mesh::Tessellation& tessellation, const std::string& origi
                : "");
 }
 
-/// How far the making of a mesh is, from the shares that its stages have in the time (measured on
-/// 10,000 grains, docs/benchmarks.md).
+/// How far the making of a mesh is, from the per cent that its stages have of the time on two
+/// processors (10,000 grains, docs/benchmarks.md).
 class Progress {
  public:
   explicit Progress(core::Log& log) : log_(log) {}
@@ -61,13 +61,13 @@ class Progress {
  private:
   static constexpr std::array<std::pair<std::string_view, double>, 8> shares{
       {{"tessellating", 3},
-       {"regularising", 3},
-       {"meshing faces", 12},
+       {"regularising", 9},
+       {"meshing faces", 4},
        {"meshing grains", 60},
-       {"sliding nodes", 10},
+       {"sliding nodes", 14},
        {"assembling", 4},
-       {"checking", 4},
-       {"writing", 4}}};
+       {"checking", 3},
+       {"writing", 3}}};
 
   core::Log& log_;
 };
