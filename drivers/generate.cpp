@@ -109,6 +109,9 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
       report.refused.flatness, report.refused.fold, report.refused.topology,
       report.refused.polyline, report.refused.domain, report.max_flatness_fault);
   tessellation.check();
+  if (const auto& pairs = tessellation.topology.periodic; !pairs.empty())
+    log.info("polycrystal: periodic; {} pairs of faces, {} of edges, {} of vertices",
+             pairs.faces.size(), pairs.edges.size(), pairs.vertices.size());
   return tessellation;
 }
 
@@ -228,6 +231,8 @@ mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std:
   progress("writing", 0);
   const auto measure = times.measure("output");
   write_mesh_files(mesh, folder, 0, options.output.mesh_formats, notes);
+  if (!mesh.periodic_nodes.empty())
+    mesh::write_periodic_nodes(mesh, results::in_folder(folder, results::periodic_name(0)));
   progress("writing", 1);
   return mesh;
 }

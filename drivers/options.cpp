@@ -23,7 +23,7 @@ mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& 
   if (const char* made = mesh_input(deck)) {
     bool given = false;
     for (const char* key : {"max_edge_length", "max_flatness_fault", "polyline_share",
-                            "polyline_angle", "position_search", "flattening_sweeps"})
+                            "min_corner_angle", "position_search", "flattening_sweeps"})
       given |= counts(deck, "regularisation", key, made);
     if (!given) return o;
   }
@@ -49,18 +49,19 @@ mesh::RegularisationOptions read_regularisation(Deck& deck, const InputOptions& 
       {.fallback = o.polyline_share,
        .min = 0,
        .max = 1,
-       .help = "Edges shorter than this share of max_edge_length are removed even where two faces "
-               "of a grain then share a polyline of two edges. 0, with polyline_angle = 0: never. "
-               "The paper's regularisation has 0, 0, and 1 and 0 in the next two keys."});
-  o.polyline_angle = t.number(
-      "polyline_angle",
+       .help =
+           "Edges shorter than this share of max_edge_length are removed even where two faces "
+           "of a grain then share a polyline of two edges. 0, with min_corner_angle = 0: never. "
+           "The paper's regularisation has 0, 0, and 1 and 0 in the next two keys."});
+  o.min_corner_angle = t.number(
+      "min_corner_angle",
       {.unit = "degrees",
-       .fallback = o.polyline_angle,
+       .fallback = o.min_corner_angle,
        .min = 0,
        .max = 90,
        .exclusive_max = true,
-       .help = "So are edges shorter than max_edge_length opposite to a corner of a triangular "
-               "face that is sharper than this; 0: none."});
+       .help = "So are edges of any length opposite to a corner of a triangular face that is "
+               "sharper than this: meshes are worst at acute corners. 0: none."});
   o.position_search = t.number(
       "position_search",
       {.fallback = o.position_search,

@@ -127,6 +127,10 @@ void check_options(Deck& deck, const Options& options, Purpose purpose) {
         fmt::format("shape = \"{}\" is for `polyslip mesh` only: loads act on the faces of a "
                     "box",
                     options.polycrystal.shape));
+  const auto& periodic = options.polycrystal.periodic;
+  if (purpose == Purpose::run && (periodic[0] || periodic[1] || periodic[2]))
+    deck.fault("polycrystal", "periodic",
+               "periodic is for `polyslip mesh` only: there are no periodic loads; remove it");
   if (purpose == Purpose::run && options.mesh.order != 2)
     deck.fault("mesh", "order",
                fmt::format("order = {} is for `polyslip mesh` only; a run needs order = 2",

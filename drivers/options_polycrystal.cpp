@@ -114,6 +114,19 @@ void read_morphology(Deck::Table& t, mesh::PolycrystalOptions& o) {
   read_distributions(t, o.distributions);
 }
 
+void read_periodic(Deck::Table& t, mesh::PolycrystalOptions& o) {
+  for (const std::string& axis :
+       t.texts("periodic",
+               {.fallback = std::vector<std::string>{},
+               .choices = {"x", "y", "z"},
+               .unique = true,
+               .help = "Directions in which the polycrystal, Voronoi cells of a box, repeats with "
+                       "the box's period: grains are whole, and its outer faces there come in "
+                       "pairs of translates whose meshes are translates too. For `polyslip "
+                       "mesh`."}))
+    o.periodic[static_cast<std::size_t>(axis[0] - 'x')] = true;
+}
+
 void read_cells(Deck& deck, Deck::Table& t, mesh::PolycrystalOptions& o) {
   const auto cells = t.optional_numbers(
       "cells", 3,
@@ -162,6 +175,15 @@ void check_use(Deck& deck, const mesh::PolycrystalOptions& o, const InputOptions
     unused(deck, key, o.morphology == Morphology::laguerre, morphology);
   unused(deck, "stretch", !mesh::is_laguerre(o.morphology), morphology);
   unused(deck, "cells", mesh::is_regular(o.morphology), morphology);
+  const bool periodic = o.periodic[0] || o.periodic[1] || o.periodic[2];
+  if (o.shape != "box" || o.morphology != Morphology::voronoi) {
+    const std::string with = o.shape != "box" ? shape : morphology;
+    if (periodic)
+      deck.fault(section, "periodic",
+                 fmt::format("periodic polycrystals are Voronoi cells of a box, not of {}", with));
+  } else if (periodic && deck.given(section, "stretch")) {
+    deck.fault(section, "periodic", "periodic is not used with stretch; remove one of them");
+  }
   if (input.seeds && o.morphology != Morphology::voronoi)
     deck.fault(section, "morphology",
                fmt::format("{} is not used with seeds; remove one of them", morphology));
@@ -211,7 +233,7 @@ mesh::PolycrystalOptions read_polycrystal(Deck& deck, InputOptions& input) {
   if (made) {
     bool given = false;
     for (const char* key : {"shape", "domain", "axis", "faceting_error", "half_spaces",
-                            "morphology", "stretch", "columnar_share", "cells", "seeds",
+                            "morphology", "periodic", "stretch", "columnar_share", "cells", "seeds",
                             "diameter_deviation", "sphericity_mean", "sphericity_deviation"})
       if (deck.given(section, key)) {
         deck.fault(section, key,
@@ -222,6 +244,7 @@ mesh::PolycrystalOptions read_polycrystal(Deck& deck, InputOptions& input) {
   }
   read_shape(deck, t, o);
   read_morphology(t, o);
+  read_periodic(t, o);
   read_cells(deck, t, o);
   count_cells(o);
   input.seeds = t.optional_file(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "core/error.hpp"
@@ -93,6 +94,41 @@ Layout lay_out(const Topology& topology, const BoundaryMesher& boundary,
   return layout;
 }
 
+/// Pairs of nodes: those of vertices, inner nodes of edges, then those of faces, from lines and
+/// triangles, which translates have in one order.
+void pair_nodes(Mesh& mesh, const Layout& layout) {
+  const auto& periodic = mesh.topology.periodic;
+  if (periodic.empty()) return;
+  auto& pairs = mesh.periodic_nodes;
+  std::vector<char> known(mesh.nodes.size(), false);
+  const auto pair = [&](int slave, int master, const Shift& shift) {
+    if (slave < 0 || known[slave]) return;
+    known[slave] = true;
+    pairs.push_back({slave, master, shift});
+  };
+  for (const auto& p : periodic.vertices)
+    pair(mesh.vertex_nodes[p.slave], mesh.vertex_nodes[p.master], p.shift);
+  for (const int n : mesh.vertex_nodes) known[n] = true;
+  for (const auto& p : periodic.edges)
+    for (int i = layout.line_first[p.slave]; i < layout.line_first[p.slave + 1]; ++i)
+      for (int k = 0; k < 3; ++k)
+        pair(mesh.lines[i][k],
+             mesh.lines[layout.line_first[p.master] + i - layout.line_first[p.slave]][k], p.shift);
+  for (const auto& line : mesh.lines)
+    for (const int n : line)
+      if (n >= 0) known[n] = true;
+  constexpr std::array<int, 6> turned{0, 2, 1, 5, 4, 3};
+  for (const auto& p : periodic.faces)
+    for (int i = layout.triangle_first[p.slave]; i < layout.triangle_first[p.slave + 1]; ++i)
+      for (int k = 0; k < 6; ++k)
+        pair(mesh.triangles[i][k],
+             mesh.triangles[layout.triangle_first[p.master] + i - layout.triangle_first[p.slave]]
+                           [turned[k]],
+             p.shift);
+  std::sort(pairs.begin(), pairs.end(),
+            [](const PeriodicPair& a, const PeriodicPair& b) { return a.slave < b.slave; });
+}
+
 class Assembler {
  public:
   Assembler(const Geometry& geometry, const BoundaryMesher& boundary,
@@ -113,6 +149,7 @@ class Assembler {
     add_boundary();
     add_corners();
     if (mesh_.order == 2) add_mids();
+    pair_nodes(mesh_, layout_);
     return std::move(mesh_);
   }
 

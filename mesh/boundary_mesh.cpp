@@ -66,8 +66,12 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
   find_planes();
   for (const auto& shape : geometry.edges)
     edge_lengths_.push_back(CurvedEdge(shape, scale).length());
-  const auto sizes =
+  join_translates();
+  auto sizes =
       vertex_sizes(geometry.topology, edge_lengths_, sizes_.edges, options.progression_factor);
+  for (int v = 0; v < geometry.topology.vertex_count; ++v)
+    sizes[vertex_masters_[v]] = std::min(sizes[vertex_masters_[v]], sizes[v]);
+  for (int v = 0; v < geometry.topology.vertex_count; ++v) sizes[v] = sizes[vertex_masters_[v]];
   for (const auto& edge : geometry.topology.edges)
     end_sizes_.push_back({sizes[edge.vertices[0]], sizes[edge.vertices[1]]});
 }
@@ -214,6 +218,10 @@ std::vector<double> BoundaryMesher::node_sizes(const BoundaryNumbers& numbers) c
       for (int n : {number(i), number(i + 1)}) sizes[n] = std::max(sizes[n], length);
     }
   }
+  for (const auto& pair : geometry_.topology.periodic.vertices)
+    sizes[pair.master] = std::max(sizes[pair.master], sizes[pair.slave]);
+  for (const auto& pair : geometry_.topology.periodic.vertices)
+    sizes[pair.slave] = sizes[pair.master];
   return sizes;
 }
 
@@ -354,7 +362,8 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
     const auto sizes = node_sizes(numbers_now);
     std::vector<int> stale;
     for (std::size_t f = 0; f < faces.size(); ++f)
-      if (face_stale_[f]) stale.push_back(static_cast<int>(f));
+      if (face_stale_[f] && !is_slave_face(static_cast<int>(f)))
+        stale.push_back(static_cast<int>(f));
     std::vector<std::string> faults(stale.size());
     core::parallel_for(core::thread_count(options_.jobs), stale.size(), [&](std::size_t i) {
       if (face_copied_[stale[i]])
@@ -373,6 +382,7 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
             fmt::format("{} cannot be meshed: {}", name(stale[i]), faults[i]));
       again = true;
     }
+    copy_slave_faces(changed);
   }
 }
 
@@ -402,10 +412,7 @@ bool BoundaryMesher::forbid_shared_edges() {
   bool any = false;
   for (std::size_t i = 1; i < uses.size(); ++i) {
     if (uses[i].nodes != uses[i - 1].nodes || uses[i].rank != 2) continue;
-    auto& list = forbidden_[uses[i].face];
-    if (std::find(list.begin(), list.end(), uses[i].local) != list.end()) continue;
-    list.push_back(uses[i].local);
-    face_stale_[uses[i].face] = any = true;
+    any |= forbid(uses[i].face, uses[i].local);
   }
   return any;
 }

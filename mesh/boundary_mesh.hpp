@@ -61,6 +61,10 @@ class BoundaryMesher {
   /// c_l of a grain.
   double grain_size(int grain) const { return sizes_.grains[grain]; }
   const Geometry& geometry() const { return geometry_; }
+  /// Whether it is one of a pair of translates: their meshes stay translates.
+  bool is_periodic_vertex(int vertex) const { return vertex_periodic_[vertex]; }
+  bool is_periodic_edge(int edge) const { return edge_periodic_[edge]; }
+  bool is_periodic_face(int face) const { return face_periodic_[face]; }
   const core::Vec3& scale() const { return scale_; }
   /// The point of an edge at an arc length, exactly in the planes that the edge lies in.
   core::Vec3 edge_point(int edge, const CurvedEdge& curve, double arc) const;
@@ -93,6 +97,15 @@ class BoundaryMesher {
   /// Puts a point on those of the domain faces that are planes.
   void keep_in_planes(core::Vec3& x, std::span<const int> domain_faces) const;
   void keep_in_plane_of(int face, core::Vec3& x) const;
+  /// Lets sizes, lengths and vertices of translates be the same.
+  void join_translates();
+  bool is_slave_edge(int edge) const { return edge_masters_[edge] != edge; }
+  bool is_slave_face(int face) const { return face_periodic_[face] && face_masters_[face] != face; }
+  void copy_slave_edges();
+  void copy_slave_faces(std::vector<char>& changed);
+  void copy_slave_face(const PeriodicPair& pair);
+  /// Forbids an inner edge of a face; of a slave, that of its master. Whether it was allowed.
+  bool forbid(int face, std::array<int, 2> local);
   void mesh_edge(int edge);
   void finish_edge(int edge);
   /// Mid nodes of the inner edges; how far the farthest lies beyond the old face.
@@ -139,6 +152,8 @@ class BoundaryMesher {
   DomainFaceLists vertex_planes_, edge_planes_;
   std::vector<core::Vec3> vertices_;
   ElementSizes sizes_;
+  std::vector<int> vertex_masters_, edge_masters_, face_masters_;  ///< itself if it has none
+  std::vector<char> vertex_periodic_, edge_periodic_, face_periodic_;
   std::vector<double> edge_lengths_;
   std::vector<std::array<double, 2>> end_sizes_;  ///< [edges] sizes that its grading starts from
   std::vector<EdgeMesh> edges_;

@@ -57,6 +57,7 @@ class BoundarySlider {
         positions_(boundary.positions(numbers_)),
         stars_(star_mesh(volumes)) {
     for (const auto& e : boundary.edges()) arcs_.push_back(e.arcs);
+    find_fixed_edges();
     find_vertex_edges();
     colour_edges();
     colour_faces();
@@ -70,10 +71,10 @@ class BoundarySlider {
         core::parallel_for(threads_, set.size(), [&](std::size_t k) { slide_face(set[k]); });
     }
     for (std::size_t e = 0; e < arcs_.size(); ++e)
-      if (arcs_[e].size() > 2) boundary_.place_edge(static_cast<int>(e), arcs_[e]);
+      if (slides(static_cast<int>(e))) boundary_.place_edge(static_cast<int>(e), arcs_[e]);
     core::parallel_for(threads_, topology_.faces.size(), [&](std::size_t f) {
       const int face = static_cast<int>(f);
-      if (boundary_.is_copied(face)) return;
+      if (boundary_.is_copied(face) || boundary_.is_periodic_face(face)) return;
       const auto first = positions_.begin() + numbers_.face_first[f];
       const auto count = static_cast<std::ptrdiff_t>(boundary_.faces()[f].inner_nodes.size());
       boundary_.place_face(face, {first, first + count}, positions_, numbers_);
@@ -103,6 +104,18 @@ class BoundarySlider {
     return {std::move(nodes), std::move(tets), static_cast<int>(positions_.size())};
   }
 
+  /// Periodic faces and edges stay as they are, so that translates stay the same, and edges that
+  /// end at them, whose elements are compared with all of the vertex's translates.
+  void find_fixed_edges() {
+    for (std::size_t e = 0; e < arcs_.size(); ++e) {
+      const auto& ends = topology_.edges[e].vertices;
+      fixed_edges_.push_back(boundary_.is_periodic_edge(static_cast<int>(e)) ||
+                             boundary_.is_periodic_vertex(ends[0]) ||
+                             boundary_.is_periodic_vertex(ends[1]));
+    }
+  }
+  bool slides(int edge) const { return arcs_[edge].size() > 2 && !fixed_edges_[edge]; }
+
   Vec3 scaled(const Vec3& x) const { return x.cwiseProduct(boundary_.scale()); }
 
   /// Edges touch the grains and vertices around them: elements at a vertex are compared too.
@@ -114,9 +127,9 @@ class BoundarySlider {
         for (const int c : face.cells)
           if (c >= 0) touched[e].push_back(c);
     for (std::size_t e = 0; e < touched.size(); ++e) {
-      if (arcs_[e].size() <= 2) touched[e].clear();
+      if (!slides(static_cast<int>(e))) touched[e].clear();
       for (const int v : topology_.edges[e].vertices)
-        if (arcs_[e].size() > 2) touched[e].push_back(grains + v);
+        if (slides(static_cast<int>(e))) touched[e].push_back(grains + v);
       std::sort(touched[e].begin(), touched[e].end());
       touched[e].erase(std::unique(touched[e].begin(), touched[e].end()), touched[e].end());
     }
@@ -126,7 +139,9 @@ class BoundarySlider {
   void colour_faces() {
     std::vector<std::vector<int>> touched(topology_.faces.size());
     for (std::size_t f = 0; f < touched.size(); ++f)
-      if (!boundary_.is_copied(static_cast<int>(f)) && !boundary_.faces()[f].inner_nodes.empty())
+      if (!boundary_.is_copied(static_cast<int>(f)) &&
+          !boundary_.is_periodic_face(static_cast<int>(f)) &&
+          !boundary_.faces()[f].inner_nodes.empty())
         for (const int c : topology_.faces[f].cells)
           if (c >= 0) touched[f].push_back(c);
     face_colours_ = colours(touched, topology_.cell_count());
@@ -150,7 +165,7 @@ class BoundarySlider {
 
   void slide_edge(int edge) {
     auto& arcs = arcs_[edge];
-    if (arcs.size() <= 2) return;
+    if (!slides(edge)) return;
     const CurvedEdge curve(boundary_.geometry().edges[edge], boundary_.scale());
     for (std::size_t k = 1; k + 1 < arcs.size(); ++k) {
       const int node = numbers_.edge_first[edge] + static_cast<int>(k) - 1;
@@ -224,7 +239,7 @@ class BoundarySlider {
 
   void slide_face(int face) {
     const auto count = boundary_.faces()[face].inner_nodes.size();
-    if (count == 0 || boundary_.is_copied(face)) return;
+    if (count == 0 || boundary_.is_copied(face) || boundary_.is_periodic_face(face)) return;
     const FaceProjection projection(boundary_.geometry().faces[face], boundary_.scale());
     for (std::size_t k = 0; k < count; ++k) {
       const int node = numbers_.face_first[face] + static_cast<int>(k);
@@ -248,6 +263,7 @@ class BoundarySlider {
   std::vector<Vec3> positions_;  ///< by number, unscaled
   StarMesh stars_;               ///< scaled
   std::vector<std::vector<double>> arcs_;
+  std::vector<char> fixed_edges_;
   std::vector<int> vertex_first_, vertex_edges_;  ///< edges of vertex v: [first[v], first[v + 1])
   std::vector<std::vector<int>> edge_colours_, face_colours_;
 };

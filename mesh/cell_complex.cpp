@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "mesh/face_fan.hpp"
+#include "mesh/folded_tessellation.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -27,26 +28,33 @@ bool subset(const std::vector<int>& part, const std::vector<int>& whole) {
 
 }  // namespace
 
-CellComplex::CellComplex(const Tessellation& tessellation)
-    : planes_(tessellation.face_planes), seeds_(tessellation.seeds), domain_(tessellation.domain) {
-  const Topology& t = tessellation.topology;
-  vertices_.resize(t.vertex_count);
-  edges_.resize(t.edges.size());
-  faces_.resize(t.faces.size());
-  cells_.resize(t.cell_faces.size());
-  for (int v = 0; v < t.vertex_count; ++v) vertices_[v].position = tessellation.vertices[v];
+CellComplex::CellComplex(const Tessellation& tessellation) {
+  FoldedTessellation folded = fold(tessellation);
+  domain_ = std::move(folded.domain);
+  periodic_ = domain_.is_periodic();
+  seeds_ = std::move(folded.seeds);
+  vertices_.resize(folded.vertices.size());
+  edges_.resize(folded.edges.size());
+  faces_.resize(folded.faces.size());
+  cells_.resize(folded.cell_faces.size());
+  for (std::size_t v = 0; v < vertices_.size(); ++v) vertices_[v].position = folded.vertices[v];
   for (int e = 0; e < edge_count(); ++e) {
-    edges_[e].vertices = t.edges[e].vertices;
-    for (const int v : t.edges[e].vertices) vertices_[v].edges.push_back(e);
+    edges_[e].vertices = folded.edges[e].vertices;
+    edges_[e].shift = folded.edges[e].shift;
+    for (const int v : edges_[e].vertices) vertices_[v].edges.push_back(e);
   }
   for (int f = 0; f < face_count(); ++f) {
+    const auto& from = folded.faces[f];
     Face& face = faces_[f];
-    face.cells = t.faces[f].cells;
-    face.domain_face = t.faces[f].domain_face;
-    face.master = tessellation.face_masters[f];
-    for (std::size_t i = 0; i < t.faces[f].edges.size(); ++i) {
-      const int e = t.faces[f].edges[i];
-      face.loop.push_back({e, t.faces[f].forward[i]});
+    face.cells = from.cells;
+    face.start = from.start;
+    face.step = from.step;
+    face.domain_face = from.domain_face;
+    face.master = from.master;
+    planes_.push_back(from.plane);
+    for (std::size_t i = 0; i < from.edges.size(); ++i) {
+      const int e = from.edges[i];
+      face.loop.push_back({e, from.forward[i]});
       edges_[e].faces.push_back(f);
       if (face.domain_face >= 0)
         for (const int v : edges_[e].vertices) vertices_[v].walls.push_back(face.domain_face);
@@ -54,12 +62,13 @@ CellComplex::CellComplex(const Tessellation& tessellation)
     face.fault = fan_fault(loop_points(f), face.master);
   }
   for (Vertex& v : vertices_) sort_unique(v.walls);
-  for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].faces = t.cell_faces[c];
+  for (std::size_t c = 0; c < cells_.size(); ++c) cells_[c].faces = std::move(folded.cell_faces[c]);
 }
 
 double CellComplex::length(int edge) const {
   const auto [a, b] = edges_[edge].vertices;
-  return (vertices_[a].position - vertices_[b].position).norm();
+  const Vec3 end = translated(vertices_[b].position, edges_[edge].shift, domain_.size);
+  return (vertices_[a].position - end).norm();
 }
 
 std::vector<Plane> CellComplex::planes_at(int vertex) const {
@@ -77,8 +86,21 @@ std::vector<int> CellComplex::loop_vertices(int face) const {
 std::vector<Vec3> CellComplex::loop_points(int face) const {
   std::vector<Vec3> points;
   points.reserve(faces_[face].loop.size());
-  for (const Side& side : faces_[face].loop) points.push_back(vertices_[start(side)].position);
+  Shift shift = faces_[face].start;
+  for (const Side& side : faces_[face].loop) {
+    const Vec3& x = vertices_[start(side)].position;
+    points.push_back(periodic_ ? translated(x, shift, domain_.size) : x);
+    if (periodic_)
+      shift = side.forward ? shift + edges_[side.edge].shift : shift - edges_[side.edge].shift;
+  }
   return points;
+}
+
+Vec3 CellComplex::position_in(int face, int vertex) const {
+  if (!periodic_) return vertices_[vertex].position;
+  const auto vertices = loop_vertices(face);
+  const auto at = std::find(vertices.begin(), vertices.end(), vertex) - vertices.begin();
+  return loop_points(face)[static_cast<std::size_t>(at)];
 }
 
 std::vector<int> CellComplex::faces_at(int vertex) const {
@@ -131,7 +153,37 @@ bool CellComplex::domain_allows(int edge) const {
   return common(walls_a, walls_b) == walls_of_edge;
 }
 
+bool CellComplex::meets_itself(int edge) const {
+  const auto [a, b] = edges_[edge].vertices;
+  if (a == b) return true;
+  for (const int v : {a, b})
+    for (const int f : faces_at(v)) {
+      if (faces_[f].cells[0] == faces_[f].cells[1]) return true;
+      auto vertices = loop_vertices(f);
+      std::sort(vertices.begin(), vertices.end());
+      if (std::adjacent_find(vertices.begin(), vertices.end()) != vertices.end()) return true;
+    }
+  return false;
+}
+
+void CellComplex::move_origin(int vertex, Shift shift) {
+  if (is_zero(shift)) return;
+  Vertex& v = change_vertex(vertex);
+  v.position = translated(v.position, shift, domain_.size);
+  const auto edges = v.edges;
+  for (const int f : faces_at(vertex))
+    if (start(faces_[f].loop.front()) == vertex) {
+      Face& face = change_face(f);
+      face.start = face.start - shift;
+    }
+  for (const int e : edges) {
+    Edge& edge = change_edge(e);
+    edge.shift = edge.vertices[0] == vertex ? edge.shift + shift : edge.shift - shift;
+  }
+}
+
 CellComplex::Obstacle CellComplex::obstacle(int edge) const {
+  if (periodic_ && meets_itself(edge)) return Obstacle::topology;
   if (!domain_allows(edge)) return Obstacle::domain;
   const auto [a, b] = edges_[edge].vertices;
   auto around = edges_[edge].faces;
@@ -186,6 +238,7 @@ void CellComplex::merge_sides_of_triangle(int face, int edge, int kept) {
 
 int CellComplex::collapse(int edge) {
   const auto [a, b] = edges_[edge].vertices;
+  move_origin(b, edges_[edge].shift);
   Vec3 position = 0.5 * (vertices_[a].position + vertices_[b].position);
   const auto &walls_a = vertices_[a].walls, &walls_b = vertices_[b].walls;
   const auto walls = walls_a.size() < walls_b.size() ? walls_b : walls_a;  // one holds the other
@@ -287,36 +340,35 @@ void CellComplex::store(Tessellation& tessellation) const {
   };
   const auto vertex_ids = number(vertices_), edge_ids = number(edges_), face_ids = number(faces_);
 
-  Topology t;
-  std::vector<Plane> planes;
-  std::vector<Vec3> positions;
-  tessellation.face_masters.clear();
+  FoldedTessellation folded;
+  folded.domain = domain_;
+  folded.seeds = seeds_;
   for (const Vertex& v : vertices_)
-    if (v.alive) positions.push_back(v.position);
-  t.vertex_count = static_cast<int>(positions.size());
+    if (v.alive) folded.vertices.push_back(v.position);
   for (const Edge& e : edges_)
-    if (e.alive) t.edges.push_back({{vertex_ids[e.vertices[0]], vertex_ids[e.vertices[1]]}});
+    if (e.alive)
+      folded.edges.push_back({{vertex_ids[e.vertices[0]], vertex_ids[e.vertices[1]]}, e.shift});
   for (int f = 0; f < face_count(); ++f) {
     const Face& face = faces_[f];
     if (!face.alive) continue;
-    TopologyFace out;
+    FoldedTessellation::Face out;
     out.cells = face.cells;
+    out.start = face.start;
+    out.step = face.step;
     out.domain_face = face.domain_face;
+    out.plane = planes_[f];
+    out.master = face.master;
     for (const Side& side : face.loop) {
       out.edges.push_back(edge_ids[side.edge]);
       out.forward.push_back(side.forward);
     }
-    t.faces.push_back(std::move(out));
-    planes.push_back(planes_[f]);
-    tessellation.face_masters.push_back(face.master);
+    folded.faces.push_back(std::move(out));
   }
   for (const Cell& c : cells_) {
-    t.cell_faces.emplace_back();
-    for (const int f : c.faces) t.cell_faces.back().push_back(face_ids[f]);
+    folded.cell_faces.emplace_back();
+    for (const int f : c.faces) folded.cell_faces.back().push_back(face_ids[f]);
   }
-  tessellation.topology = std::move(t);
-  tessellation.face_planes = std::move(planes);
-  tessellation.vertices = std::move(positions);
+  tessellation = unfold(std::move(folded));
 }
 
 }  // namespace polyslip::mesh

@@ -13,7 +13,8 @@
 
 namespace polyslip::mesh {
 
-/// Ids stay what they were in the tessellation; what is deleted is marked dead.
+/// Ids stay what they were in the folded tessellation (mesh/folded_tessellation.hpp: translates are
+/// one entity, each cell has a frame of its own); what is deleted is marked dead.
 class CellComplex {
  public:
   struct Vertex {
@@ -24,6 +25,7 @@ class CellComplex {
   };
   struct Edge {
     std::array<int, 2> vertices{-1, -1};
+    Shift shift{0, 0, 0};  ///< of vertex 1 where vertex 0 is at its position
     std::vector<int> faces;
     bool alive = true;
   };
@@ -34,6 +36,8 @@ class CellComplex {
   struct Face {
     std::vector<Side> loop;
     std::array<int, 2> cells{-1, -1};
+    Shift start{0, 0, 0};  ///< of the loop's first vertex, in the frame of cells[0]
+    Shift step{0, 0, 0};   ///< from the frame of cells[0] to that of cells[1]
     int domain_face = -1;
     int master = -1;
     double fault = 0;  ///< squared chord of the flatness fault
@@ -59,9 +63,15 @@ class CellComplex {
   double length(int edge) const;
   /// The planes of the domain faces to which a vertex is bound.
   std::vector<Plane> planes_at(int vertex) const;
-  /// Vertices, and their positions, along the loop of a face.
+  /// Vertices, and their positions in the frame of cells[0], along the loop of a face.
   std::vector<int> loop_vertices(int face) const;
   std::vector<core::Vec3> loop_points(int face) const;
+  /// Position of one of its vertices in the frame of a face's cells[0].
+  core::Vec3 position_in(int face, int vertex) const;
+  /// From there to the frame of cells[1].
+  core::Vec3 step(int face) const {
+    return translated(core::Vec3::Zero(), faces_[face].step, domain_.size);
+  }
   /// Faces and cells that meet at a vertex, ascending; -1, the outside, is the first of the cells.
   std::vector<int> faces_at(int vertex) const;
   std::vector<int> cells_at(int vertex) const;
@@ -72,7 +82,8 @@ class CellComplex {
   ///    bound, and those to which both are bound hold the edge;
   ///  - topology: faces and cells (the outside included) that hold both vertices hold the edge;
   ///    vertices that neighbour both do so across a triangular face of the edge; no cell keeps
-  ///    fewer than four faces.
+  ///    fewer than four faces. In periodic directions an entity that meets translates of both
+  ///    vertices counts as holding both, and none at them may meet a translate of itself.
   enum class Obstacle { none, domain, topology };
   Obstacle obstacle(int edge) const;
   bool can_collapse(int edge) const { return obstacle(edge) == Obstacle::none; }
@@ -113,6 +124,9 @@ class CellComplex {
   std::vector<int> triangles_of(int edge) const;
   bool on_polyline(int vertex) const;
   bool domain_allows(int edge) const;
+  bool meets_itself(int edge) const;
+  /// Lets the position of a vertex be what its translate's is now.
+  void move_origin(int vertex, Shift shift);
   bool keeps_four_faces(const std::vector<int>& lost) const;
   void merge_sides_of_triangle(int face, int edge, int kept);
 
@@ -124,6 +138,7 @@ class CellComplex {
   std::vector<core::Vec3> seeds_;
   std::vector<Saved> journal_;
   Domain domain_;
+  bool periodic_ = false;
 };
 
 }  // namespace polyslip::mesh

@@ -52,15 +52,18 @@ class PlaneFit {
   Vec3 residual_ = Vec3::Zero();
 };
 
+/// The fan triangles of a cell's faces, turned outwards, in the frame of the cell.
 template <class Visit>
 void for_each_triangle(const CellComplex& complex, int cell, Visit&& visit) {
   for (const int f : complex.cell(cell).faces) {
     const auto& face = complex.face(f);
-    const bool outwards = face.cells[0] == cell;
-    for_each_fan_triangle(complex.loop_points(f), face.master,
-                          [&](const Vec3& a, const Vec3& b, const Vec3& m) {
-                            outwards ? visit(a, b, m) : visit(b, a, m);
-                          });
+    const auto points = complex.loop_points(f);
+    if (face.cells[0] == cell) for_each_fan_triangle(points, face.master, visit);
+    if (face.cells[1] != cell) continue;
+    const Vec3 step = complex.step(f);
+    for_each_fan_triangle(points, face.master, [&](const Vec3& a, const Vec3& b, const Vec3& m) {
+      visit(b + step, a + step, m + step);
+    });
   }
 }
 
@@ -86,18 +89,16 @@ bool seen_from_centroid(const CellComplex& complex, int cell) {
 }  // namespace
 
 Vec3 least_squares_position(const CellComplex& complex, int vertex, const std::vector<int>& faces) {
-  const auto& v = complex.vertex(vertex);
   PlaneFit fit(complex, vertex);
   for (const int f : faces) {
     if (complex.face(f).domain_face >= 0) continue;
     const Plane& plane = complex.plane(f);
-    fit.add(plane.normal, plane.offset - plane.normal.dot(v.position));
+    fit.add(plane.normal, plane.offset - plane.normal.dot(complex.position_in(f, vertex)));
   }
   return fit.position();
 }
 
 Vec3 flattest_position(const CellComplex& complex, int vertex, const std::vector<int>& faces) {
-  const auto& v = complex.vertex(vertex);
   PlaneFit fit(complex, vertex);
   for (const int f : faces) {
     if (complex.face(f).domain_face >= 0) continue;
@@ -110,7 +111,7 @@ Vec3 flattest_position(const CellComplex& complex, int vertex, const std::vector
       (vertices[i] == vertex ? here : others) += points[i];
     fit.add(normal, normal.dot(others / static_cast<double>(points.size() - 1) - here));
     const Plane& plane = complex.plane(f);
-    fit.add(plane.normal, plane.offset - plane.normal.dot(v.position), first_plane_weight);
+    fit.add(plane.normal, plane.offset - plane.normal.dot(here), first_plane_weight);
   }
   return fit.position();
 }

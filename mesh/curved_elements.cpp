@@ -70,6 +70,7 @@ class Mender {
     auto bad = all_unfit();
     if (bad.empty()) return 0;
     find_rings();
+    find_translates();
     for (int sweep = 0; sweep < 2 && !bad.empty(); ++sweep) {
       for (int e : bad) follow(e);
       touched_.insert(touched_.end(), bad.begin(), bad.end());
@@ -176,6 +177,14 @@ class Mender {
     touched_.insert(touched_.end(), elements.begin(), elements.end());
   }
 
+  void find_translates() {
+    if (mesh_.periodic_nodes.empty()) return;
+    translates_.resize(mesh_.nodes.size());
+    for (std::size_t p = 0; p < mesh_.periodic_nodes.size(); ++p)
+      for (const int n : {mesh_.periodic_nodes[p].slave, mesh_.periodic_nodes[p].master})
+        translates_[n].push_back(static_cast<int>(p));
+  }
+
   double worst_around(int mid) const {
     double worst = std::numeric_limits<double>::infinity();
     for (int e : ring(mid))
@@ -226,9 +235,10 @@ class Mender {
     for (int i = 4; i < 10; ++i) {
       if (!curved_[t[i]]) continue;
       const MidNode& m = mid_node(t[i]);
+      const Vec3 was = mesh_.nodes[t[i]];
       mesh_.nodes[t[i]] = m.chord + pull * m.bulge;
       const double ratio = least_ratio_of(mesh_, t, gradients_);
-      mesh_.nodes[t[i]] = m.chord + m.bulge;
+      mesh_.nodes[t[i]] = was;
       if (ratio > best_ratio) best_ratio = ratio, best = t[i];
     }
     if (best >= 0) return pull_in(best);
@@ -241,7 +251,20 @@ class Mender {
       if (curved_[t[i]]) pull_in(t[i]);
   }
 
+  /// With its translates, to where theirs are.
   void pull_in(int mid) {
+    if (translates_.empty()) return pull_in_one(mid);
+    const int master =
+        translates_[mid].empty() ? mid : mesh_.periodic_nodes[translates_[mid][0]].master;
+    pull_in_one(master);
+    for (const int p : translates_[master]) {
+      const auto& pair = mesh_.periodic_nodes[p];
+      pull_in_one(pair.slave);
+      mesh_.nodes[pair.slave] = translated(mesh_.nodes[master], pair.shift, mesh_.size);
+    }
+  }
+
+  void pull_in_one(int mid) {
     auto& m = mid_node(mid);
     pulled_on_surface_ += m.pulls == 0 && on_surface_[mid];
     curved_[mid] = ++m.pulls < pulls;
@@ -259,6 +282,8 @@ class Mender {
   std::vector<int> rings_;                 ///< elements around mid nodes
   std::vector<int> touched_;               ///< elements around mid nodes that moved
   int pulled_on_surface_ = 0;
+  /// [nodes] pairs of the node; empty if there are none
+  std::vector<std::vector<int>> translates_;
 };
 
 }  // namespace

@@ -47,6 +47,7 @@ struct Domain {
   std::array<bool, 3> periodic{false, false, false};
 
   bool is_box() const { return shape == "box"; }
+  bool is_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   int face_count() const { return static_cast<int>(faces.size()); }
   /// The names of the facets, each once, in the order of the facets.
   std::vector<std::string> surface_names() const;

@@ -28,11 +28,12 @@ std::vector<double> BoundaryMesher::graded_arcs(int edge, int least_count) const
 
 void BoundaryMesher::mesh_edges() {
   for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
-    if (!edge_stale_[e]) continue;
+    if (!edge_stale_[e] || is_slave_edge(e)) continue;
     edge_copied_[e] ? copy_edge(e) : mesh_edge(e);
   }
   for (int i = 0; i < balancing_rounds && balance_vertices(); ++i) {
   }
+  copy_slave_edges();
 }
 
 std::array<double, 2> BoundaryMesher::end_elements(int edge) const {
@@ -44,9 +45,9 @@ std::vector<double> BoundaryMesher::least_at_vertices() const {
   std::vector<double> least(geometry_.topology.vertex_count,
                             std::numeric_limits<double>::infinity());
   for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
-    if (edge_copied_[e]) continue;
+    if (edge_copied_[e] || is_slave_edge(e)) continue;
     for (int i = 0; i < 2; ++i) {
-      double& l = least[geometry_.topology.edges[e].vertices[i]];
+      double& l = least[vertex_masters_[geometry_.topology.edges[e].vertices[i]]];
       l = std::min(l, end_elements(e)[i]);
     }
   }
@@ -58,10 +59,10 @@ bool BoundaryMesher::balance_vertices() {
   const double p = options_.progression_factor;
   bool any = false;
   for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
-    if (edge_copied_[e]) continue;
+    if (edge_copied_[e] || is_slave_edge(e)) continue;
     bool refine = false;
     for (int i = 0; i < 2; ++i) {
-      const double most = p * least[geometry_.topology.edges[e].vertices[i]];
+      const double most = p * least[vertex_masters_[geometry_.topology.edges[e].vertices[i]]];
       if (!(end_elements(e)[i] > most * (1 + 1e-9))) continue;
       end_sizes_[e][i] = std::min(end_sizes_[e][i], most);
       refine = true;
@@ -78,10 +79,11 @@ double BoundaryMesher::largest_progression() const {
   const auto least = least_at_vertices();
   double worst = 1;
   for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
-    if (edge_copied_[e]) continue;
+    if (edge_copied_[e] || is_slave_edge(e)) continue;
     worst = std::max(worst, mesh::largest_progression(edges_[e].arcs));
     for (int i = 0; i < 2; ++i)
-      worst = std::max(worst, end_elements(e)[i] / least[geometry_.topology.edges[e].vertices[i]]);
+      worst = std::max(worst, end_elements(e)[i] /
+                                  least[vertex_masters_[geometry_.topology.edges[e].vertices[i]]]);
   }
   return worst;
 }
@@ -120,14 +122,15 @@ BoundaryMesher::EdgePlace BoundaryMesher::under_flat_triangle(
     for (int k = 0; k < 3; ++k) {
       const int a = t[k], b = t[(k + 1) % 3];
       if (a >= n || b != (a + 1) % n) continue;
-      const auto [edge, element] = loop[a];
+      const auto [of_loop, element] = loop[a];
+      const int edge = edge_masters_[of_loop];  // its elements are those of the translate
       if (edge_stale_[edge] || edge_copied_[edge]) continue;
       const Vec3 base = at(b) - at(a), side = at(t[(k + 2) % 3]) - at(a);
       const double foot = side.dot(base) / base.squaredNorm();
       const double height = side.cross(base).norm() / base.squaredNorm();
       if (!(height < flat_height * std::min(foot, 1 - foot))) continue;
       const auto& arcs = edges_[edge].arcs;
-      const bool forward = nodes[a] == number_of(edge, element, numbers);
+      const bool forward = nodes[a] == number_of(of_loop, element, numbers);
       const double share = forward ? foot : 1 - foot;
       return {edge, (1 - share) * arcs[element] + share * arcs[element + 1]};
     }
@@ -141,7 +144,7 @@ bool BoundaryMesher::cut_under_flat_triangles(const std::vector<char>& faces) {
   // One a face and round: two nodes that face each other must not both move to where the other was.
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const int f = static_cast<int>(i);
-    if (!faces[i] || face_copied_[f]) continue;
+    if (!faces[i] || face_copied_[f] || is_slave_face(f)) continue;
     const auto place = under_flat_triangle(f, x, numbers_now);
     if (place.edge < 0) continue;
     cut_edge(place.edge, place.arc);

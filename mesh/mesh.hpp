@@ -28,6 +28,9 @@ struct Mesh {
   std::vector<std::array<int, 3>> lines;        ///< from, to (along the topology edge), mid
   std::vector<int> line_edge;                   ///< sorted by edge; lines of an edge in its order
   std::vector<int> vertex_nodes;                ///< [topology.vertex_count] node of each vertex
+  /// Nodes of periodic vertices, edges and faces, mid nodes too: where the slave is, the master is
+  /// shift * size away. Sorted by slave; no master is a slave.
+  std::vector<PeriodicPair> periodic_nodes;
   Topology topology;
   Domain domain = box_domain({1, 1, 1});  ///< at zero strain
   core::Vec3 size{1, 1, 1};               ///< of its bounding box
@@ -39,7 +42,9 @@ struct Mesh {
 /// Throws InternalError with element and values unless: each interior facet is in exactly two
 /// tetrahedra, each facet between two grains or on the domain boundary is exactly one triangle of
 /// the right face (node for node, mid nodes too), every node is used, det J > 0 at every point of
-/// the 4- and 15-point quadrature rules, tags are in range and sorted.
+/// the 4- and 15-point quadrature rules, tags are in range and sorted; slaves are their masters'
+/// translates, number for number, and each triangle and line of a slave has its master's
+/// translates.
 void check(const Mesh& mesh, int threads = 1);
 
 /// Volume of each grain: quadratic elements integrated exactly.
@@ -56,6 +61,11 @@ struct QualitySummary {
   double min_radius_ratio = 0, mean_radius_ratio = 0;
 };
 QualitySummary quality(const Mesh& mesh);
+
+/// Pairs of periodic nodes, numbered as in the mesh's file: a header, then a line
+/// "slave,master,shift_x,shift_y,shift_z" each, the slave being at the master's place + shift *
+/// period (of the box).
+void write_periodic_nodes(const Mesh& mesh, const std::string& path);
 
 /// Gmsh format 2.2 ASCII: grains as physical volumes, surfaces of the domain (x0 ... z1 of a box)
 /// as named physical ones. Positions with 17 digits. Written beside and renamed.

@@ -362,6 +362,41 @@ void check_jacobian(const Mesh& m, int e, const Gradients& gradients) {
   }
 }
 
+/// Pairs hold; lines and triangles of slaves are those of their masters, in the same order,
+/// triangles turned about.
+void check_periodic(const Mesh& m) {
+  std::vector<int> masters(m.nodes.size());
+  std::vector<Shift> shifts(m.nodes.size(), Shift{});
+  for (int i = 0; i < m.node_count(); ++i) masters[i] = i;
+  int last = -1;
+  for (const auto& p : m.periodic_nodes) {
+    if (p.slave <= last || p.slave >= m.node_count() || p.master < 0 || p.master >= m.node_count())
+      fail("periodic pair of nodes {} and {} of {}", p.slave, p.master, m.node_count());
+    if (m.nodes[p.slave] != translated(m.nodes[p.master], p.shift, m.size))
+      fail("node {} is no translate of node {}", p.slave, p.master);
+    last = p.slave;
+    masters[p.slave] = p.master;
+    shifts[p.slave] = p.shift;
+  }
+  for (const auto& p : m.periodic_nodes)
+    if (masters[p.master] != p.master) fail("node {} is a master and a slave", p.master);
+  std::vector<int> first(m.topology.faces.size() + 1, 0);
+  for (const int f : m.triangle_face) ++first[f + 1];
+  for (std::size_t f = 0; f < m.topology.faces.size(); ++f) first[f + 1] += first[f];
+  constexpr std::array<int, 6> turned{0, 2, 1, 5, 4, 3};
+  for (const auto& p : m.topology.periodic.faces) {
+    const int count = first[p.slave + 1] - first[p.slave];
+    bool same = count == first[p.master + 1] - first[p.master];
+    for (int t = 0; same && t < count; ++t)
+      for (int i = 0; i < (m.order == 1 ? 3 : 6); ++i) {
+        const int a = m.triangles[first[p.slave] + t][i];
+        const int b = m.triangles[first[p.master] + t][turned[i]];
+        same = same && masters[a] == masters[b] && shifts[a] - shifts[b] == p.shift;
+      }
+    if (!same) fail("the mesh of face {} is no translate of that of face {}", p.slave, p.master);
+  }
+}
+
 void check_jacobians(const Mesh& m, int threads) {
   Gradients gradients;
   for (const auto& q : tet_quadrature_4()) gradients.push_back(tet10_gradients(q.xi));
@@ -378,6 +413,7 @@ void check_all(const Mesh& mesh, int threads) {
   check_mid_nodes(mesh, threads);
   check_facets(mesh, threads);
   check_lines(mesh, threads);
+  check_periodic(mesh);
   check_jacobians(mesh, threads);
 }
 

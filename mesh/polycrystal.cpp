@@ -260,6 +260,7 @@ Domain polycrystal_domain(const PolycrystalOptions& options) {
   if (o.shape == "sphere") return sphere_domain(o.domain, o.faceting_error, o.grains);
   Domain box = box_domain(size);
   box.scale = size[0] / o.domain[0];
+  box.periodic = o.periodic;
   return box;
 }
 

@@ -34,7 +34,7 @@ class Regulariser {
         max_fault_(chord_of_degrees(options.max_flatness_fault)),
         search_fault_(chord_of_degrees(options.position_search * options.max_flatness_fault)),
         polyline_length_(options.polyline_share * options.max_edge_length),
-        polyline_cosine_(std::cos(options.polyline_angle * std::numbers::pi / 180)) {}
+        corner_cosine_(std::cos(options.min_corner_angle * std::numbers::pi / 180)) {}
 
   RegularisationReport run() {
     report_.edges_before = complex_.edge_count();
@@ -79,17 +79,20 @@ class Regulariser {
     for (const int f : complex_.edge(edge).faces) {
       const auto vertices = complex_.loop_vertices(f);
       if (vertices.size() != 3) continue;
-      for (const int v : vertices) {
-        if (v == a || v == b) continue;
-        const Vec3 p = complex_.vertex(a).position - complex_.vertex(v).position;
-        const Vec3 q = complex_.vertex(b).position - complex_.vertex(v).position;
-        if (p.dot(q) > polyline_cosine_ * p.norm() * q.norm()) return true;
+      const auto points = complex_.loop_points(f);
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (vertices[i] == a || vertices[i] == b) continue;
+        const Vec3 p = points[(i + 1) % 3] - points[i], q = points[(i + 2) % 3] - points[i];
+        if (p.dot(q) > corner_cosine_ * p.norm() * q.norm()) return true;
       }
     }
     return false;
   }
 
-  bool may_leave_polyline(int edge) const {
+  // Whether the edge is to be deleted, in loops that may leave polylines or not.
+  bool is_wanted(int edge) const {
+    if (!complex_.edge(edge).alive) return false;
+    if (!polylines_) return is_short(edge);
     return complex_.length(edge) < polyline_length_ || faces_sharp_corner(edge);
   }
 
@@ -122,8 +125,7 @@ class Regulariser {
   RegularisationReport::Refused loop() {
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
     const auto push = [&](int edge) {
-      if (is_short(edge) && (!polylines_ || may_leave_polyline(edge)))
-        queue.push({complex_.length(edge), edge});
+      if (is_wanted(edge)) queue.push({complex_.length(edge), edge});
     };
     for (int e = 0; e < complex_.edge_count(); ++e) push(e);
     RegularisationReport::Refused refused;
@@ -195,7 +197,7 @@ class Regulariser {
     double best_fault = infinity;
     const auto edges = complex_.vertex(vertex).edges;
     for (const int e : edges) {
-      if (!is_short(e) || !complex_.can_collapse(e)) continue;
+      if (!(is_short(e) || is_wanted(e)) || !complex_.can_collapse(e)) continue;
       const auto here = complex_.mark();
       const Trial trial = collapse(e);
       if (trial.fault < best_fault && judge(trial, start) == Outcome::deleted) {
@@ -296,7 +298,7 @@ class Regulariser {
   CellComplex complex_;
   RegularisationOptions options_;
   double max_length_, max_fault_, search_fault_;
-  double polyline_length_, polyline_cosine_;
+  double polyline_length_, corner_cosine_;
   bool polylines_ = false;  ///< whether deletions may leave polylines
   RegularisationReport report_;
 };
@@ -311,9 +313,9 @@ void check_options(const RegularisationOptions& options) {
   if (!(options.polyline_share >= 0 && options.polyline_share <= 1))
     throw core::InputError(
         fmt::format("polyline_share = {}: must be 0 to 1", options.polyline_share));
-  if (!(options.polyline_angle >= 0 && options.polyline_angle < 90))
-    throw core::InputError(
-        fmt::format("polyline_angle = {}: must be 0 to below 90 degrees", options.polyline_angle));
+  if (!(options.min_corner_angle >= 0 && options.min_corner_angle < 90))
+    throw core::InputError(fmt::format("min_corner_angle = {}: must be 0 to below 90 degrees",
+                                       options.min_corner_angle));
   if (!(options.position_search >= 1 && options.position_search <= 4))
     throw core::InputError(
         fmt::format("position_search = {}: must be 1 to 4", options.position_search));

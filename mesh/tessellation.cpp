@@ -39,10 +39,16 @@ void check_sizes(const Tessellation& t) {
   if (t.size != t.domain.size) fail("size and domain disagree");
 }
 
-/// Exactly in a box; in other domains but for the rounding of points put on oblique planes.
+/// Exactly in a box, but for its periodic directions; in other domains but for the rounding of
+/// points put on oblique planes.
 bool inside(const Tessellation& t, const Vec3& x) {
   if (!x.allFinite()) return false;
-  if (t.domain.is_box()) return x.minCoeff() >= 0 && (t.size - x).minCoeff() >= 0;
+  if (t.domain.is_box()) {
+    bool within = true;
+    for (int k = 0; k < 3; ++k)
+      within = within && (t.domain.periodic[k] || (x[k] >= 0 && t.size[k] - x[k] >= 0));
+    return within;
+  }
   const double tolerance = on_plane * t.size.maxCoeff();
   return std::all_of(t.domain.faces.begin(), t.domain.faces.end(), [&](const DomainFace& face) {
     return face.plane.normal.dot(x) - face.plane.offset <= tolerance;
@@ -59,6 +65,17 @@ void check_vertices(const Tessellation& t) {
   for (const auto& e : t.topology.edges)
     if (!((t.vertices[e.vertices[0]] - t.vertices[e.vertices[1]]).norm() > 0))
       fail(fmt::format("vertices {} and {} coincide", e.vertices[0], e.vertices[1]));
+}
+
+void check_translates(const Tessellation& t) {
+  for (const auto& pair : t.topology.periodic.vertices)
+    if (t.vertices[pair.slave] != translated(t.vertices[pair.master], pair.shift, t.size))
+      fail(fmt::format("vertex {} is no translate of vertex {}", pair.slave, pair.master));
+  for (const auto& list : {t.topology.periodic.vertices, t.topology.periodic.faces})
+    for (const auto& pair : list)
+      for (int k = 0; k < 3; ++k)
+        if (pair.shift[k] != 0 && !t.domain.periodic[k])
+          fail(fmt::format("a shift along direction {}, which is not periodic", k));
 }
 
 void check_face(const Tessellation& t, int f) {
@@ -119,6 +136,7 @@ void Tessellation::check() const {
   topology.check(domain.face_count());
   check_sizes(*this);
   check_vertices(*this);
+  check_translates(*this);
   for (int f = 0; f < static_cast<int>(topology.faces.size()); ++f) check_face(*this, f);
   double total = 0;
   for (int c = 0; c < topology.cell_count(); ++c) {

@@ -52,6 +52,7 @@ struct PolycrystalOptions {
   double columnar_share = 0.5;                ///< of the height, of columnar-equiaxed
   std::optional<std::array<int, 3>> cells{};  ///< cubes of a regular grid; then they make the box
   GrainDistributions distributions{};         ///< of laguerre
+  std::array<bool, 3> periodic{false, false, false};  ///< directions in which the box repeats
   std::vector<core::Vec3> seeds{};  ///< if given, in the unit of `domain` or `half_spaces`
 };
 
@@ -60,10 +61,11 @@ struct RegularisationOptions {
   double max_edge_length = 0.13;     ///< l_max, for grains of unit mean volume; 0: none
   double max_flatness_fault = 20.0;  ///< f_max [degrees]; 0: none
   /// Beyond the paper, which never lets two faces of a cell share a polyline of two edges: edges
-  /// below this share of l_max, and short ones opposite to a corner of a triangular face below this
-  /// angle [degrees], may be deleted although they leave one, for they spoil the mesh most.
-  double polyline_share = 0.2;
-  double polyline_angle = 8.0;
+  /// below this share of l_max, and those of any length opposite to a corner of a triangular face
+  /// below this angle [degrees], may be deleted although they leave one, for they spoil the mesh
+  /// most.
+  double polyline_share = 0.1;
+  double min_corner_angle = 6.0;
   /// Beyond the paper: where the least-squares position of a new vertex (eq. 2) leaves a flatness
   /// fault above f_max, but not above this times f_max, a better one is sought nearby; 1: never.
   double position_search = 1.2;
@@ -74,7 +76,7 @@ struct RegularisationOptions {
   /// The paper's rules: the same, without what goes beyond them.
   RegularisationOptions as_in_the_paper() const {
     RegularisationOptions o = *this;
-    o.polyline_share = o.polyline_angle = 0;
+    o.polyline_share = o.min_corner_angle = 0;
     o.position_search = 1;
     o.flattening_sweeps = 0;
     return o;

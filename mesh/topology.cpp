@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -53,7 +54,7 @@ void check_loop(const Topology& t, int f) {
   if (twice != vertices.end()) fail(fmt::format("face {} meets vertex {} twice", f, *twice));
 }
 
-void check_face_cells(const Topology& t, int f, int domain_faces) {
+void check_face_cells(const Topology& t, int f, int domain_faces, bool periodic) {
   const auto& face = t.faces[f];
   const auto [inside, outside] = face.cells;
   if (!in_range(inside, t.cell_count()) || outside >= t.cell_count() || outside < -1)
@@ -62,8 +63,10 @@ void check_face_cells(const Topology& t, int f, int domain_faces) {
   if (inside == outside) fail(fmt::format("face {} has cell {} on both sides", f, inside));
   if (face.domain_face < -1 || face.domain_face >= domain_faces)
     fail(fmt::format("face {} has domain face {}", f, face.domain_face));
-  if ((outside == -1) != (face.domain_face >= 0))
-    fail(fmt::format("face {} has outer cell {} and domain face {}", f, outside, face.domain_face));
+  const bool outer = face.domain_face >= 0 || periodic;
+  if ((outside == -1) != outer || (face.domain_face >= 0 && periodic))
+    fail(fmt::format("face {} has outer cell {} and domain face {}{}", f, outside, face.domain_face,
+                     periodic ? ", and is periodic" : ""));
 }
 
 // Each side of a face must be listed by its cell, once.
@@ -85,6 +88,71 @@ void check_cell_lists(const Topology& t) {
   for (int f = 0; f < count(t.faces.size()); ++f)
     if (listed[f] != (t.faces[f].cells[1] >= 0 ? 2 : 1))
       fail(fmt::format("face {} is listed by {} cells", f, listed[f]));
+}
+
+void check_pair_list(const char* what, const std::vector<PeriodicPair>& pairs, int n) {
+  std::vector<char> is_slave(n, 0);
+  int last = -1;
+  for (const auto& pair : pairs) {
+    if (!in_range(pair.slave, n) || !in_range(pair.master, n) || pair.slave <= last)
+      fail(
+          fmt::format("{} pair of slave {} and master {} of {}", what, pair.slave, pair.master, n));
+    is_slave[last = pair.slave] = 1;
+  }
+  for (const auto& pair : pairs)
+    if (is_slave[pair.master])
+      fail(fmt::format("{} {} is a master and a slave", what, pair.master));
+}
+
+// Where each entity's master is from there, and the master.
+struct Masters {
+  std::vector<int> of;
+  std::vector<Shift> shift;
+  Masters(const std::vector<PeriodicPair>& pairs, int n) : of(n), shift(n, Shift{}) {
+    std::iota(of.begin(), of.end(), 0);
+    for (const auto& pair : pairs) {
+      of[pair.slave] = pair.master;
+      shift[pair.slave] = pair.shift;
+    }
+  }
+};
+
+// Ends of a slave edge, and edges of a slave face, are translates of its master's by the same
+// shift.
+void check_translates(const Topology& t) {
+  const Masters vertices(t.periodic.vertices, t.vertex_count);
+  const Masters edges(t.periodic.edges, count(t.edges.size()));
+  for (const auto& pair : t.periodic.edges)
+    for (int i = 0; i < 2; ++i) {
+      const int a = t.edges[pair.slave].vertices[i], b = t.edges[pair.master].vertices[i];
+      if (vertices.of[a] != vertices.of[b] || vertices.shift[a] - vertices.shift[b] != pair.shift)
+        fail(fmt::format("edge {} is no translate of edge {}", pair.slave, pair.master));
+    }
+  for (const auto& pair : t.periodic.faces) {
+    const auto &slave = t.faces[pair.slave], &master = t.faces[pair.master];
+    const std::size_t n = slave.edges.size();
+    bool same = n == master.edges.size() && slave.cells[1] == -1 && master.cells[1] == -1;
+    for (std::size_t i = 0; same && i < n; ++i) {
+      const int a = slave.edges[i], b = master.edges[n - 1 - i];
+      same = slave.forward[i] != master.forward[n - 1 - i] && edges.of[a] == edges.of[b] &&
+             edges.shift[a] - edges.shift[b] == pair.shift;
+    }
+    if (!same) fail(fmt::format("face {} is no translate of face {}", pair.slave, pair.master));
+  }
+}
+
+// Which faces are periodic, once the pairs hold.
+std::vector<char> check_periodic(const Topology& t) {
+  const auto& p = t.periodic;
+  check_pair_list("vertex", p.vertices, t.vertex_count);
+  check_pair_list("edge", p.edges, count(t.edges.size()));
+  check_pair_list("face", p.faces, count(t.faces.size()));
+  std::vector<char> periodic(t.faces.size(), 0);
+  for (const auto& pair : p.faces)
+    for (const int f : {pair.slave, pair.master})
+      if (std::exchange(periodic[f], 1)) fail(fmt::format("face {} is in two pairs", f));
+  check_translates(t);
+  return periodic;
 }
 
 // Both faces of a cell at an edge must run along it in opposite directions, seen from the cell.
@@ -148,10 +216,10 @@ std::vector<int> Topology::face_vertices(int face) const {
 void Topology::check(int domain_faces) const {
   if (cell_faces.empty()) fail("no cells");
   check_edges(*this);
-  for (int f = 0; f < count(faces.size()); ++f) {
-    check_loop(*this, f);
-    check_face_cells(*this, f, domain_faces);
-  }
+  for (int f = 0; f < count(faces.size()); ++f) check_loop(*this, f);
+  const auto is_periodic = check_periodic(*this);
+  for (int f = 0; f < count(faces.size()); ++f)
+    check_face_cells(*this, f, domain_faces, is_periodic[f]);
   check_cell_lists(*this);
   for (int c = 0; c < cell_count(); ++c) check_cell_surface(*this, c);
   check_all_used(*this);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "mesh/periodicity.hpp"
+
 namespace polyslip::mesh {
 
 /// The faces of the box, in the order of their ids: x0 x1 y0 y1 z0 z1 (0 ... 5).
@@ -30,13 +32,15 @@ struct Topology {
   std::vector<TopologyEdge> edges;
   std::vector<TopologyFace> faces;
   std::vector<std::vector<int>> cell_faces;  ///< for each cell, its faces
+  Periodicity periodic;                      ///< pairs of translates; empty if not periodic
 
   int cell_count() const { return static_cast<int>(cell_faces.size()); }
   /// Vertices of a face in the order of its loop; vertex i is the start of edge i.
   std::vector<int> face_vertices(int face) const;
   /// Throws InternalError if an invariant fails: loops closed, ids in range, each edge of a cell in
   /// exactly two of its faces, Euler's formula V - E + F = 2 for each cell (degree-two vertices
-  /// included), cells[1] = -1 iff domain_face >= 0, below the number of the domain's faces.
+  /// included), cells[1] = -1 iff domain_face >= 0, below the number of the domain's faces, or the
+  /// face is one of a periodic pair; pairs as Periodicity says.
   void check(int domain_faces = 6) const;
 };
 

@@ -13,6 +13,7 @@
 #include <unordered_map>
 
 #include "core/error.hpp"
+#include "mesh/folded_tessellation.hpp"
 #include "mesh/tessellation.hpp"
 #include "mesh/voronoi_cells.hpp"
 
@@ -73,116 +74,179 @@ LocalVertices collect(const std::vector<SeparateCell>& cells) {
   return all;
 }
 
-// Seeds that are almost a grid can give one key to vertices that lie apart: those are not joined.
-void join_equal_keys(const LocalVertices& all, double apart, UnionFind& sets) {
+/// Distances and places on the torus that the periodic directions of a domain make of space.
+struct Torus {
+  const Domain& domain;
+
+  Shift nearest_shift(const Vec3& x) const {
+    Shift shift{0, 0, 0};
+    for (int k = 0; k < 3; ++k)
+      if (domain.periodic[k]) shift[k] = static_cast<int>(std::lround(x[k] / domain.size[k]));
+    return shift;
+  }
+  double distance(const Vec3& a, const Vec3& b) const {
+    const Vec3 d = a - b;
+    return translated(d, -nearest_shift(d), domain.size).norm();
+  }
+  /// The translate in [0, period).
+  Vec3 wrapped(const Vec3& x) const {
+    return translated(x, -nearest_shift(x - 0.5 * domain.size), domain.size);
+  }
+};
+
+// Seeds that are almost a grid can give one key to vertices that lie apart, and so do the
+// translates of few grains: those are not joined.
+void join_equal_keys(const LocalVertices& all, double apart, const Torus& torus, UnionFind& sets) {
   std::vector<int> order(all.keys.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int i, int j) {
     return all.keys[i] != all.keys[j] ? all.keys[i] < all.keys[j] : i < j;
   });
+  const bool periodic = torus.domain.is_periodic();
   for (std::size_t i = 1; i < order.size(); ++i)
-    if (all.keys[order[i]] != no_key && all.keys[order[i]] == all.keys[order[i - 1]] &&
-        (all.positions[order[i]] - all.positions[order[i - 1]]).norm() < apart)
-      sets.join(order[i - 1], order[i]);
+    for (std::size_t j = i;
+         j-- > 0 && all.keys[order[i]] != no_key && all.keys[order[i]] == all.keys[order[j]];) {
+      if (torus.distance(all.positions[order[i]], all.positions[order[j]]) < apart)
+        sets.join(order[j], order[i]);
+      if (!periodic) break;
+    }
 }
 
 // Sweep along a direction in which the planes of a grid do not stack up.
-void join_coincident(const LocalVertices& all, double tolerance, UnionFind& sets) {
+void join_coincident(const LocalVertices& all, double tolerance, const Torus& torus,
+                     UnionFind& sets) {
   const Vec3 direction = Vec3(0.5377, 0.6423, 0.5461).normalized();
   struct Item {
     double along;
     int id;
+    Vec3 x;
   };
   std::vector<Item> items;
-  for (int i = 0; i < static_cast<int>(all.positions.size()); ++i)
-    if (sets.root(i) == i) items.push_back({direction.dot(all.positions[i]), i});
+  const Domain& domain = torus.domain;
+  for (int i = 0; i < static_cast<int>(all.positions.size()); ++i) {
+    if (sets.root(i) != i) continue;
+    // Near the low sides of the box the translates at the high sides count too.
+    std::vector<Vec3> places{torus.wrapped(all.positions[i])};
+    for (int k = 0; k < 3; ++k)
+      if (domain.periodic[k] && places.front()[k] <= tolerance)
+        for (std::size_t p = 0, n = places.size(); p < n; ++p)
+          places.push_back(places[p] + domain.size[k] * Vec3::Unit(k));
+    for (const Vec3& x : places) items.push_back({direction.dot(x), i, x});
+  }
   std::sort(items.begin(), items.end(), [](const Item& p, const Item& q) {
     return p.along != q.along ? p.along < q.along : p.id < q.id;
   });
   for (std::size_t i = 0; i < items.size(); ++i)
     for (std::size_t j = i + 1; j < items.size() && items[j].along - items[i].along <= tolerance;
          ++j)
-      if ((all.positions[items[i].id] - all.positions[items[j].id]).norm() <= tolerance)
-        sets.join(items[i].id, items[j].id);
+      if ((items[i].x - items[j].x).norm() <= tolerance) sets.join(items[i].id, items[j].id);
 }
 
-using Loop = std::vector<int>;
+/// A vertex of a loop: where it is, its position + shift * periods.
+struct Corner {
+  int vertex = -1;
+  Shift shift{0, 0, 0};
+  bool operator==(const Corner&) const = default;
+};
+using Loop = std::vector<Corner>;
 
 void drop_repeated(Loop& loop) {
   Loop kept;
-  for (const int v : loop)
+  for (const Corner& v : loop)
     if (kept.empty() || kept.back() != v) kept.push_back(v);
   while (kept.size() > 1 && kept.front() == kept.back()) kept.pop_back();
   loop = std::move(kept);
 }
 
-bool same_loop_reversed(const Loop& p, Loop q) {
+/// Whether q, moved by `shift`, is p backwards.
+bool same_loop_reversed(const Loop& p, Loop q, const Shift& shift) {
   if (p.size() != q.size()) return false;
+  for (Corner& corner : q) corner.shift = corner.shift + shift;
   std::reverse(q.begin(), q.end());
   const auto start = std::find(q.begin(), q.end(), p.front());
   std::rotate(q.begin(), start, q.end());
   return p == q;
 }
 
+struct EdgeKey {
+  std::array<int, 2> vertices;
+  Shift shift;
+  bool operator==(const EdgeKey&) const = default;
+  struct Hash {
+    std::size_t operator()(const EdgeKey& key) const {
+      std::uint64_t h = static_cast<std::uint64_t>(key.vertices[0]) << 32U |
+                        static_cast<std::uint32_t>(key.vertices[1]);
+      for (const int s : key.shift) h = 0x9E3779B97F4A7C15U * (h ^ static_cast<unsigned>(s));
+      return h;
+    }
+  };
+};
+
 class Assembly {
  public:
   Assembly(const std::vector<SeparateCell>& cells, const std::vector<Vec3>& seeds,
            const std::vector<double>& weights, const Domain& domain)
       : cells_(cells), all_(collect(cells)) {
-    result_.seeds = seeds;
-    result_.weights = weights;
-    result_.domain = domain;
-    result_.size = domain.size;
+    folded_.seeds = seeds;
+    folded_.weights = weights;
+    folded_.domain = domain;
   }
 
   /// Empty if cells do not agree on the faces between them: the tolerance was too small.
   std::optional<Tessellation> build(double tolerance) {
-    result_.topology = {};
-    result_.vertices.clear();
-    result_.face_planes.clear();
-    result_.face_masters.clear();
+    folded_.vertices.clear();
+    folded_.edges.clear();
+    folded_.faces.clear();
+    folded_.cell_faces.assign(cells_.size(), {});
     edge_ids_.clear();
     number_vertices(tolerance);
     map_loops();
-    result_.topology.cell_faces.resize(cells_.size());
     for (int c = 0; c < static_cast<int>(cells_.size()); ++c)
       for (std::size_t i = 0; i < cells_[c].faces.size(); ++i)
         if (!add_face(c, i)) return std::nullopt;
+    Tessellation result = unfold(folded_);
     try {
-      result_.topology.check(result_.domain.face_count());
+      result.topology.check(result.domain.face_count());
     } catch (const core::InternalError&) {
       return std::nullopt;
     }
-    return result_;
+    return result;
   }
 
  private:
   void number_vertices(double tolerance) {
     const auto n = all_.positions.size();
+    const Torus torus{folded_.domain};
     UnionFind sets(n);
-    join_equal_keys(all_, 1e6 * tolerance, sets);
-    join_coincident(all_, tolerance, sets);
-    vertex_ids_.assign(n, -1);
+    join_equal_keys(all_, 1e6 * tolerance, torus, sets);
+    join_coincident(all_, tolerance, torus, sets);
+    corners_.assign(n, {});
     std::vector<std::array<int, 2>> walls;
     for (int i = 0; i < static_cast<int>(n); ++i) {
       const int root = sets.root(i);
       if (root == i) {
-        vertex_ids_[i] = static_cast<int>(result_.vertices.size());
-        result_.vertices.push_back(all_.positions[i].cwiseMax(0).cwiseMin(result_.size));
+        corners_[i].vertex = static_cast<int>(folded_.vertices.size());
+        folded_.vertices.push_back(clamped(all_.positions[i]));
       }
-      vertex_ids_[i] = vertex_ids_[root];
-      for (const int w : all_.walls[i]) walls.push_back({vertex_ids_[i], w});
+      const int vertex = corners_[root].vertex;
+      corners_[i] = {vertex, torus.nearest_shift(all_.positions[i] - folded_.vertices[vertex])};
+      for (const int w : all_.walls[i]) walls.push_back({vertex, w});
     }
-    snap({result_.vertices.size(), std::move(walls)});
-    result_.topology.vertex_count = static_cast<int>(result_.vertices.size());
+    snap({folded_.vertices.size(), std::move(walls)});
+  }
+
+  Vec3 clamped(Vec3 x) const {
+    for (int k = 0; k < 3; ++k)
+      if (!folded_.domain.periodic[k]) x[k] = std::clamp(x[k], 0.0, folded_.domain.size[k]);
+    return x;
   }
 
   void snap(const DomainFaceLists& walls) {
     std::vector<Plane> planes;
-    for (std::size_t v = 0; v < result_.vertices.size(); ++v) {
+    for (std::size_t v = 0; v < folded_.vertices.size(); ++v) {
       planes.clear();
-      for (const int w : walls[v]) planes.push_back(result_.domain.faces[w].plane);
-      if (!planes.empty()) put_on_planes(planes, result_.vertices[v]);
+      for (const int w : walls[v]) planes.push_back(folded_.domain.faces[w].plane);
+      if (!planes.empty()) put_on_planes(planes, folded_.vertices[v]);
     }
   }
 
@@ -191,74 +255,75 @@ class Assembly {
     for (std::size_t c = 0; c < cells_.size(); ++c)
       for (const auto& face : cells_[c].faces) {
         Loop loop;
-        for (const int v : face.loop) loop.push_back(vertex_ids_[all_.first[c] + v]);
+        for (const int v : face.loop) loop.push_back(corners_[all_.first[c] + v]);
         drop_repeated(loop);
         if (loop.size() < 3) loop.clear();
         loops_[c].push_back(std::move(loop));
       }
   }
 
-  const Loop& loop_between(int cell, int neighbour) const {
+  const Loop& loop_between(int cell, int neighbour, const Shift& shift) const {
     static const Loop none;
     const auto& faces = cells_[cell].faces;
     for (std::size_t i = 0; i < faces.size(); ++i)
-      if (faces[i].neighbour == neighbour) return loops_[cell][i];
+      if (faces[i].neighbour == neighbour && faces[i].shift == shift) return loops_[cell][i];
     return none;
   }
 
   bool add_face(int cell, std::size_t i) {
     const Loop& loop = loops_[cell][i];
     if (loop.empty()) return true;
-    const int neighbour = cells_[cell].faces[i].neighbour;
+    const auto& [neighbour, shift, vertices] = cells_[cell].faces[i];
     if (neighbour >= 0) {
-      if (!same_loop_reversed(loop, loop_between(neighbour, cell))) return false;
-      if (neighbour < cell) return true;  // was added from the other side
+      if (!same_loop_reversed(loop, loop_between(neighbour, cell, -shift), shift)) return false;
+      // Was it added from the other side?
+      if (neighbour < cell || (neighbour == cell && shift < Shift{0, 0, 0})) return true;
     }
-    auto& t = result_.topology;
-    const int id = static_cast<int>(t.faces.size());
-    TopologyFace face;
+    const int id = static_cast<int>(folded_.faces.size());
+    FoldedTessellation::Face face;
     face.cells = {cell, std::max(neighbour, -1)};
+    face.start = loop.front().shift;
+    face.step = -shift;
     if (neighbour < 0) face.domain_face = wall_of_neighbour(neighbour);
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const int from = loop[k], to = loop[(k + 1) % loop.size()];
-      const int edge = edge_between(from, to);
-      face.edges.push_back(edge);
-      face.forward.push_back(t.edges[edge].vertices[0] == from);
-    }
-    t.faces.push_back(std::move(face));
-    t.cell_faces[cell].push_back(id);
-    if (neighbour >= 0) t.cell_faces[neighbour].push_back(id);
-    result_.face_planes.push_back(plane_between(cell, neighbour));
-    result_.face_masters.push_back(-1);
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      add_side(loop[k], loop[(k + 1) % loop.size()], face);
+    face.plane = plane_between(cell, neighbour, shift);
+    folded_.faces.push_back(std::move(face));
+    folded_.cell_faces[cell].push_back(id);
+    if (neighbour >= 0 && neighbour != cell) folded_.cell_faces[neighbour].push_back(id);
     return true;
   }
 
-  int edge_between(int from, int to) {
-    const auto low = static_cast<std::uint64_t>(std::min(from, to));
-    const auto high = static_cast<std::uint64_t>(std::max(from, to));
-    auto& edges = result_.topology.edges;
-    const auto [at, added] = edge_ids_.try_emplace(low << 32U | high, edges.size());
-    if (added) edges.push_back({{from, to}});
-    return at->second;
+  void add_side(const Corner& from, const Corner& to, FoldedTessellation::Face& face) {
+    const Shift along = to.shift - from.shift;
+    const bool up = from.vertex != to.vertex ? from.vertex < to.vertex : Shift{0, 0, 0} < along;
+    const EdgeKey key =
+        up ? EdgeKey{{from.vertex, to.vertex}, along} : EdgeKey{{to.vertex, from.vertex}, -along};
+    const auto [at, added] = edge_ids_.try_emplace(key, folded_.edges.size());
+    if (added) folded_.edges.push_back({{from.vertex, to.vertex}, along});
+    const auto& edge = folded_.edges[at->second];
+    face.edges.push_back(at->second);
+    face.forward.push_back(edge.vertices[0] == from.vertex && edge.shift == along);
   }
 
-  Plane plane_between(int cell, int neighbour) const {
-    if (neighbour < 0) return result_.domain.faces[wall_of_neighbour(neighbour)].plane;
+  Plane plane_between(int cell, int neighbour, const Shift& shift) const {
+    if (neighbour < 0) return folded_.domain.faces[wall_of_neighbour(neighbour)].plane;
     Plane plane;
-    const Vec3 &p = result_.seeds[cell], &q = result_.seeds[neighbour];
+    const Vec3& p = folded_.seeds[cell];
+    const Vec3 q = translated(folded_.seeds[neighbour], shift, folded_.domain.size);
     plane.normal = (q - p).normalized();
     plane.offset = plane.normal.dot(0.5 * (p + q));
-    if (!result_.weights.empty())
-      plane.offset += (result_.weights[cell] - result_.weights[neighbour]) / (2 * (q - p).norm());
+    if (!folded_.weights.empty())
+      plane.offset += (folded_.weights[cell] - folded_.weights[neighbour]) / (2 * (q - p).norm());
     return plane;
   }
 
   const std::vector<SeparateCell>& cells_;
   LocalVertices all_;
-  Tessellation result_;
-  std::vector<int> vertex_ids_;
+  FoldedTessellation folded_;
+  std::vector<Corner> corners_;  ///< of the local vertices
   std::vector<std::vector<Loop>> loops_;
-  std::unordered_map<std::uint64_t, int> edge_ids_;
+  std::unordered_map<EdgeKey, int, EdgeKey::Hash> edge_ids_;
 };
 
 // No weights: a Voronoi tessellation.

@@ -6,6 +6,7 @@
 
 #include "core/types.hpp"
 #include "mesh/domain.hpp"
+#include "mesh/periodicity.hpp"
 
 namespace polyslip::mesh {
 
@@ -15,6 +16,7 @@ constexpr int wall_of_neighbour(int neighbour) { return -1 - neighbour; }
 
 struct SeparateFace {
   int neighbour = 0;      ///< cell or wall on the other side
+  Shift shift{0, 0, 0};   ///< the neighbour is the translate by shift * periods
   std::vector<int> loop;  ///< vertices of the cell, anticlockwise seen from outside
 };
 
@@ -23,8 +25,9 @@ struct SeparateCell {
   std::vector<SeparateFace> faces;
 };
 
-/// One cell a seed, clipped by the domain. The seeds lie in it. Throws InputError if a seed has no
-/// cell (two seeds coincide).
+/// One cell a seed, clipped by the domain and, in periodic directions, by the seeds' translates; it
+/// lies around its seed, across the sides of the box. The seeds lie in it. Throws InputError if a
+/// seed has no cell (two seeds coincide).
 std::vector<SeparateCell> separate_voronoi_cells(const std::vector<core::Vec3>& seeds,
                                                  const Domain& domain);
 

@@ -23,6 +23,10 @@ inline int checkpoint_number(std::string_view name) {
 inline std::string mesh_name(int number, std::string_view extension = ".msh") {
   return numbered("mesh-", number, 3, extension);
 }
+/// "mesh-000-periodic.csv"
+inline std::string periodic_name(int number) {
+  return numbered("mesh-", number, 3, "-periodic.csv");
+}
 
 inline constexpr std::string_view results_folder = "results";
 inline constexpr std::string_view checkpoints_folder = "checkpoints";

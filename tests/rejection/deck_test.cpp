@@ -123,6 +123,11 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
     {"RightAngleOfAFace", "[regularisation]\nmax_flatness_fault = 90\n",
      "deck.toml:2:22: [regularisation] max_flatness_fault = 90 must be >= 0 and < 90"},
+    {"RunOfAPeriodicPolycrystal", "[polycrystal]\nperiodic = [\"x\"]\n",
+     "deck.toml:2:12: [polycrystal] periodic is for `polyslip mesh` only: there are no periodic "
+     "loads; remove it"},
+    {"UnknownDirection", "[polycrystal]\nperiodic = [\"w\"]\n",
+     "deck.toml:2:13: [polycrystal] periodic: entry 1 = \"w\" must be \"x\", \"y\" or \"z\""},
     {"SearchBelowOne", "[regularisation]\nposition_search = 0.5\n",
      "deck.toml:2:19: [regularisation] position_search = 0.5 must be >= 1 and <= 4"},
     {"NegativeSweeps", "[regularisation]\nflattening_sweeps = -1\n",

@@ -122,7 +122,7 @@ domain = [1, 2, 3]
 max_edge_length = 0.26
 max_flatness_fault = 10
 polyline_share = 0
-polyline_angle = 5
+min_corner_angle = 5
 position_search = 1.1
 flattening_sweeps = 2
 [mesh]
@@ -191,7 +191,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.regularisation.max_edge_length, 0.26);
   EXPECT_EQ(o.regularisation.max_flatness_fault, 10);
   EXPECT_EQ(o.regularisation.polyline_share, 0);
-  EXPECT_EQ(o.regularisation.polyline_angle, 5);
+  EXPECT_EQ(o.regularisation.min_corner_angle, 5);
   EXPECT_EQ(o.regularisation.position_search, 1.1);
   EXPECT_EQ(o.regularisation.flattening_sweeps, 2);
   EXPECT_EQ(o.mesh.element_size, 0.3);

@@ -171,7 +171,7 @@ TEST(Regularisation, ThePapersOwnLeavesNoPolylines) {
 
 TEST(Regularisation, PolylinesRemoveTheShortestEdges) {
   RegularisationOptions with, without;
-  without.polyline_share = without.polyline_angle = 0;
+  without.polyline_share = without.min_corner_angle = 0;
   int left_with = 0, left_without = 0;
   for (int seed = 1; seed <= 5; ++seed) {
     auto p = voronoi(200, seed), q = p;
