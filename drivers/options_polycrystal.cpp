@@ -263,6 +263,7 @@ void check_polycrystal(Deck& deck, const mesh::PolycrystalOptions& o, const Inpu
       deck.fault(section, "seeds", fmt::format("{}: no such file", *input.seeds));
     return;
   }
+  if (deck.given(section, "cells") && !o.cells) return;  // a fault that is known already
   if (mesh::is_laguerre(o.morphology) && o.grains < 2)
     deck.fault(section, "grains", "grains: a Laguerre polycrystal needs 2 grains or more");
   const char* key = o.shape == "half-spaces"         ? "half_spaces"

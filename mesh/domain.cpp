@@ -98,9 +98,9 @@ class Polyhedron {
   int count() const { return static_cast<int>(planes_.size()); }
 
   std::string name(int i) const {
-    const Vec3& n = planes_[i].normal;
+    const Vec3 n = planes_[i].normal + Vec3::Zero();  // no minus before zeros
     return fmt::format("half-space {} ({:.6g} x + {:.6g} y + {:.6g} z <= {:.6g})", i + 1, n.x(),
-                       n.y(), n.z(), planes_[i].offset);
+                       n.y(), n.z(), planes_[i].offset + 0.0);
   }
 
   void unit_normals() {

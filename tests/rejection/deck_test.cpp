@@ -90,8 +90,20 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:2:15: [polycrystal] half_spaces is not used with shape = \"box\"; remove it"},
     {"UnknownMorphology", "[polycrystal]\nmorphology = \"bambo\"\n",
      "deck.toml:2:14: [polycrystal] morphology = \"bambo\" must be \"voronoi\", \"columnar\", "
-     "\"bamboo\", \"columnar-equiaxed\", \"cubes\", \"truncated-octahedra\" or "
-     "\"rhombic-dodecahedra\"; did you mean \"bamboo\"?"},
+     "\"bamboo\", \"columnar-equiaxed\", \"cubes\", \"truncated-octahedra\", "
+     "\"rhombic-dodecahedra\", \"laguerre\" or \"grain-growth\"; did you mean \"bamboo\"?"},
+    {"SphericityOfVoronoi", "[polycrystal]\nsphericity_mean = 0.85\n",
+     "deck.toml:2:19: [polycrystal] sphericity_mean is not used with morphology = \"voronoi\"; "
+     "remove it"},
+    {"RounderThanCanBe", "[polycrystal]\nmorphology = \"laguerre\"\nsphericity_mean = 0.99\n",
+     "deck.toml:3:19: [polycrystal] sphericity_mean = 0.99 must be < 0.95"},
+    {"LaguerreOfOneGrain", "[polycrystal]\nmorphology = \"grain-growth\"\ngrains = 1\n",
+     "deck.toml:3:10: [polycrystal] grains: a Laguerre polycrystal needs 2 grains or more"},
+    {"PeriodicColumns", "[polycrystal]\nmorphology = \"columnar\"\nperiodic = [\"x\"]\n",
+     "deck.toml:3:12: [polycrystal] periodic polycrystals are Voronoi cells of a box, not of "
+     "morphology = \"columnar\""},
+    {"PeriodicStretch", "[polycrystal]\nstretch = [2.0, 1.0, 1.0]\nperiodic = [\"x\"]\n",
+     "deck.toml:3:12: [polycrystal] periodic is not used with stretch; remove one of them"},
     {"FlatStretch", "[polycrystal]\nstretch = [1.0, 0.0, 1.0]\n",
      "deck.toml:2:17: [polycrystal] stretch: entry 2 = 0.0 must be > 0"},
     {"ShareOfNoColumns", "[polycrystal]\ncolumnar_share = 0.5\n",

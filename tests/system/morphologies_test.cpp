@@ -23,7 +23,7 @@ std::string text_of(const fs::path& path) {
 TEST(Morphologies, EveryDeckGivesAMeshAndAPicture) {
   int count = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(POLYSLIP_SOURCE_DIR) / "inputs")) {
-    if (text_of(entry.path()).find("polyslip mesh inputs/") == std::string::npos) continue;
+    if (text_of(entry.path()).find("docs/polycrystals.md") == std::string::npos) continue;
     SCOPED_TRACE(entry.path().filename().string());
     Sandbox sandbox;
     std::string deck = text_of(entry.path());

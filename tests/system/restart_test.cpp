@@ -54,7 +54,7 @@ std::vector<Moment> moments() {
       {"after the checkpoint on the new mesh",
        [](auto& run, auto) { return has_checkpoint(run, 4); }, on},
       {"while reloading", [](auto& run, auto) { return has_rows(run, 16); }, on},
-      {"late", [](auto& run, auto) { return has_rows(run, 24); }, on},
+      {"late", [](auto& run, auto) { return has_rows(run, 20); }, on},
       {"while a state is written",
        [](auto& run, auto since) { return has_part(run / "results", since); }, on, true},
       {"while the summary or the picture is made",

@@ -174,6 +174,13 @@ mesh_formats = ["msh4", "vtu"]
 /// Keys that have a meaning for some types of load only; loading_test.cpp has them.
 bool of_one_type(const core::Declaration& d) {
   if (d.section == "loading.stage") return true;
+  if (d.section == "polycrystal") {
+    for (const char* key : {"shape", "axis", "faceting_error", "half_spaces", "morphology",
+                            "periodic", "stretch", "columnar_share", "diameter_deviation",
+                            "sphericity_mean", "sphericity_deviation", "cells", "seeds"})
+      if (d.key == key) return true;
+    return false;
+  }
   if (d.section != "loading") return false;
   for (const char* key : {"control", "axis", "constrained_axis", "direction", "lateral",
                           "velocity_gradient", "held", "traction_strain"})
