@@ -93,7 +93,8 @@ class Regulariser {
   bool is_wanted(int edge) const {
     if (!complex_.edge(edge).alive) return false;
     if (!polylines_) return is_short(edge);
-    return complex_.length(edge) < polyline_length_ || faces_sharp_corner(edge);
+    return complex_.length(edge) < polyline_length_ ||
+           (max_length_ > 0 && faces_sharp_corner(edge));
   }
 
   int count_short() const {

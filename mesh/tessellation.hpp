@@ -58,7 +58,7 @@ struct PolycrystalOptions {
 
 /// What a deck asks for in [regularisation].
 struct RegularisationOptions {
-  double max_edge_length = 0.13;     ///< l_max, for grains of unit mean volume; 0: none
+  double max_edge_length = 0.13;     ///< l_max, for grains of unit mean volume; 0: no deletions
   double max_flatness_fault = 20.0;  ///< f_max [degrees]; 0: none
   /// Beyond the paper, which never lets two faces of a cell share a polyline of two edges: edges
   /// below this share of l_max, and those of any length opposite to a corner of a triangular face

@@ -96,7 +96,7 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:2:19: [polycrystal] sphericity_mean is not used with morphology = \"voronoi\"; "
      "remove it"},
     {"RounderThanCanBe", "[polycrystal]\nmorphology = \"laguerre\"\nsphericity_mean = 0.99\n",
-     "deck.toml:3:19: [polycrystal] sphericity_mean = 0.99 must be < 0.95"},
+     "deck.toml:3:19: [polycrystal] sphericity_mean = 0.99 must be > 0.5 and < 0.95"},
     {"LaguerreOfOneGrain", "[polycrystal]\nmorphology = \"grain-growth\"\ngrains = 1\n",
      "deck.toml:3:10: [polycrystal] grains: a Laguerre polycrystal needs 2 grains or more"},
     {"PeriodicColumns", "[polycrystal]\nmorphology = \"columnar\"\nperiodic = [\"x\"]\n",
@@ -135,9 +135,6 @@ const WrongDeck wrong_decks[] = {
      "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
     {"RightAngleOfAFace", "[regularisation]\nmax_flatness_fault = 90\n",
      "deck.toml:2:22: [regularisation] max_flatness_fault = 90 must be >= 0 and < 90"},
-    {"RunOfAPeriodicPolycrystal", "[polycrystal]\nperiodic = [\"x\"]\n",
-     "deck.toml:2:12: [polycrystal] periodic is for `polyslip mesh` only: there are no periodic "
-     "loads; remove it"},
     {"UnknownDirection", "[polycrystal]\nperiodic = [\"w\"]\n",
      "deck.toml:2:13: [polycrystal] periodic: entry 1 = \"w\" must be \"x\", \"y\" or \"z\""},
     {"SearchBelowOne", "[regularisation]\nposition_search = 0.5\n",

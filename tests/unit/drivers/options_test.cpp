@@ -188,6 +188,22 @@ bool of_one_type(const core::Declaration& d) {
   return d.key[1] == '0' || d.key[1] == '1';
 }
 
+TEST(Options, PeriodicDirectionsAreForMeshing) {
+  core::Deck deck =
+      core::Deck::from_text("[polycrystal]\nperiodic = [\"z\", \"x\"]\n", "deck.toml");
+  EXPECT_EQ(read_options(deck, Purpose::mesh).polycrystal.periodic,
+            (std::array{true, false, true}));
+  core::Deck again = core::Deck::from_text("[polycrystal]\nperiodic = [\"z\"]\n", "deck.toml");
+  try {
+    read_options(again, Purpose::run);
+    FAIL() << "a periodic run was not rejected";
+  } catch (const core::InputError& e) {
+    EXPECT_STREQ(e.what(),
+                 "deck.toml:2:12: [polycrystal] periodic is for `polyslip mesh` only: there are no "
+                 "periodic loads; remove it");
+  }
+}
+
 TEST(Options, EveryKeyReachesItsOption) {
   core::Deck deck = core::Deck::from_text(other_values, "deck.toml");
   const Options o = read_options(deck);
@@ -240,8 +256,8 @@ TEST(Options, EveryKeyReachesItsOption) {
   // The deck above would miss a key that is added later: each declared one is in it, but for those
   // that have a single value or exclude another.
   for (const auto& d : deck.declarations())
-    EXPECT_TRUE(deck.given(d.section, d.key) || d.key == "order" || d.key == "type" ||
-                d.key == "distribution" || d.key == "file" || of_one_type(d))
+    EXPECT_TRUE(deck.given(d.section, d.key) || d.key == "periodic" || d.key == "order" ||
+                d.key == "type" || d.key == "distribution" || d.key == "file" || of_one_type(d))
         << d.section << "." << d.key;
 }
 

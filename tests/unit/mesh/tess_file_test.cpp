@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <map>
@@ -41,7 +42,7 @@ class TessFile : public testing::Test {
     tessellation_ = voronoi_tessellation(options);
     regularise(tessellation_, RegularisationOptions{});
 
-    path_ = testing::TempDir() + "polyslip_tess_test.tess";
+    path_ = testing::TempDir() + "polyslip_tess_test-" + std::to_string(getpid()) + ".tess";
     write_tess(tessellation_, path_);
     text_ = core::read_text(path_);
   }

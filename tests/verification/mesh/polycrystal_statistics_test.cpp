@@ -123,6 +123,31 @@ TEST(PolycrystalStatistics, PoissonVoronoiMeansRiseWithTheCube) {
   EXPECT_NEAR(mean_of(10000, 1), 15.32, 0.2);
 }
 
+// Without a boundary there is no bias by the number of grains. Tessellations are independent: the
+// standard error of the mean is that between them.
+TEST(PolycrystalStatistics, PeriodicPoissonVoronoiMeans) {
+  const int count = 20, grains = 500;
+  std::vector<double> faces;
+  double mean = 0;
+  for (int seed = 1; seed <= count; ++seed) {
+    auto options = cube(grains, 200 + seed);
+    options.periodic = {true, true, true};
+    InnerMeans means;
+    means.add(voronoi_tessellation(options));
+    ASSERT_EQ(means.cells, grains);
+    EXPECT_NEAR(means.mean_edges(), 3 * means.mean_faces() - 6, 1e-9);
+    faces.push_back(means.mean_faces());
+    mean += faces.back() / count;
+  }
+  double variance = 0;
+  for (const double f : faces) variance += (f - mean) * (f - mean) / (count - 1);
+  const double error = std::sqrt(variance / count);
+  RecordProperty("faces", std::to_string(mean));
+  RecordProperty("error", std::to_string(error));
+  EXPECT_LT(error, 0.03);
+  EXPECT_NEAR(mean, 2 + 48 * M_PI * M_PI / 35, 3 * error);
+}
+
 // Fig. 7, 100,000 grains. The least-squares position alone refuses too many edges for flatness from
 // l_max = 0.39 on (11.8 and 11.4 faces).
 TEST(PolycrystalStatistics, LargerLengthsTakeMoreFaces) {
