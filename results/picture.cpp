@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -135,9 +136,18 @@ void draw_curve(Canvas& canvas, const Projection& projection, const Vec3& a, con
 
 void draw_boundaries(Canvas& canvas, const Projection& projection, const mesh::Mesh& mesh,
                      double width) {
+  // Not where two facets of one grain and one surface meet: a cylinder's sides, say.
   std::set<int> outer;
-  for (const auto& face : mesh.topology.faces)
-    if (face.domain_face >= 0) outer.insert(face.edges.begin(), face.edges.end());
+  std::set<std::array<int, 3>> sides;  // edge, grain, surface
+  const auto surfaces = mesh.domain.surface_of_face();
+  for (const auto& face : mesh.topology.faces) {
+    if (face.domain_face < 0) continue;
+    for (const int e : face.edges)
+      if (!sides.insert({e, face.cells[0], surfaces[face.domain_face]}).second)
+        outer.erase(e);
+      else
+        outer.insert(e);
+  }
   for (std::size_t l = 0; l < mesh.lines.size(); ++l) {
     if (!outer.contains(mesh.line_edge[l])) continue;
     const Vec3 &a = mesh.nodes[mesh.lines[l][0]], &b = mesh.nodes[mesh.lines[l][1]];
