@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <numeric>
@@ -75,7 +76,7 @@ TEST(PeriodicMesh, CheckSeesANodeThatLeavesItsTranslate) {
 
 TEST(PeriodicMesh, PairsAreWrittenAsTheFileNumbersNodes) {
   const Mesh mesh = periodic_mesh(1, {true, false, false}, 1);
-  const std::string path = testing::TempDir() + "/pairs.csv";
+  const std::string path = testing::TempDir() + "/pairs-" + std::to_string(getpid()) + ".csv";
   write_periodic_nodes(mesh, path);
   std::ifstream file(path);
   std::string line;

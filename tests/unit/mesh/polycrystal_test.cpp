@@ -1,6 +1,7 @@
 #include "mesh/polycrystal.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -251,7 +252,9 @@ TEST(Polycrystal, StretchedGrainsAreLongerByItsFactors) {
 class SeedFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    path_ = (std::filesystem::path(testing::TempDir()) / "polyslip-seeds.txt").string();
+    path_ = (std::filesystem::path(testing::TempDir()) /
+             ("polyslip-seeds-" + std::to_string(getpid()) + ".txt"))
+                .string();
   }
   void TearDown() override { std::filesystem::remove(path_); }
   void write(const std::string& text) const { std::ofstream(path_) << text; }
