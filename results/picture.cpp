@@ -63,7 +63,7 @@ struct Extent {
 std::vector<int> elements_behind(const mesh::Mesh& mesh) {
   std::map<std::array<int, 3>, std::size_t> triangle_of;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (mesh.topology.faces[mesh.triangle_face[t]].domain_face < 0) continue;
+    if (mesh.topology.faces[mesh.triangle_face[t]].cells[1] >= 0) continue;  // inside
     std::array<int, 3> corners{mesh.triangles[t][0], mesh.triangles[t][1], mesh.triangles[t][2]};
     std::sort(corners.begin(), corners.end());
     triangle_of[corners] = t;
@@ -140,10 +140,12 @@ void draw_boundaries(Canvas& canvas, const Projection& projection, const mesh::M
   std::set<int> outer;
   std::set<std::array<int, 3>> sides;  // edge, grain, surface
   const auto surfaces = mesh.domain.surface_of_face();
-  for (const auto& face : mesh.topology.faces) {
-    if (face.domain_face < 0) continue;
+  for (int f = 0; f < static_cast<int>(mesh.topology.faces.size()); ++f) {
+    const auto& face = mesh.topology.faces[f];
+    if (face.cells[1] >= 0) continue;
+    const int surface = face.domain_face >= 0 ? surfaces[face.domain_face] : -1 - f;  // periodic
     for (const int e : face.edges)
-      if (!sides.insert({e, face.cells[0], surfaces[face.domain_face]}).second)
+      if (!sides.insert({e, face.cells[0], surface}).second)
         outer.erase(e);
       else
         outer.insert(e);
