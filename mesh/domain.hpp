@@ -49,6 +49,12 @@ struct Domain {
   bool is_box() const { return shape == "box"; }
   bool is_periodic() const { return periodic[0] || periodic[1] || periodic[2]; }
   int face_count() const { return static_cast<int>(faces.size()); }
+  /// Whether x lies in the domain, `margin` or more from each of its faces; false for NaN.
+  bool contains(const core::Vec3& x, double margin = 0) const {
+    for (const DomainFace& face : faces)
+      if (!(face.plane.normal.dot(x) <= face.plane.offset - margin)) return false;
+    return true;
+  }
   /// The names of the facets, each once, in the order of the facets.
   std::vector<std::string> surface_names() const;
   /// [faces] index of the facet's name in surface_names.

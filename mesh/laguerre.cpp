@@ -110,13 +110,16 @@ class Search {
   }
 
   void scatter_seeds(int grains) {
-    while (static_cast<int>(seeds_.positions.size()) < grains) {
-      const Vec3 x(random_.uniform(0, domain_.size.x()), random_.uniform(0, domain_.size.y()),
-                   random_.uniform(0, domain_.size.z()));
-      const bool inside = std::all_of(
-          domain_.faces.begin(), domain_.faces.end(),
-          [&](const DomainFace& f) { return f.plane.normal.dot(x) < f.plane.offset - margin; });
-      if (inside) seeds_.positions.push_back(x);
+    constexpr int patience = 10'000'000;  // points in a row outside the domain
+    for (int i = 0; static_cast<int>(seeds_.positions.size()) < grains; ++i) {
+      if (i == patience)
+        throw core::InputError(
+            "polycrystal: the domain has no room for seeds: it is too thin somewhere");
+      Vec3 x;
+      for (int k = 0; k < 3; ++k) x[k] = random_.uniform(0, domain_.size[k]);
+      if (!domain_.contains(x, margin)) continue;
+      seeds_.positions.push_back(x);
+      i = 0;
     }
     seeds_.weights.assign(seeds_.positions.size(), 0);
   }
@@ -168,9 +171,7 @@ class Search {
     tried = seeds_;
     for (std::size_t i = 0; i < tried.positions.size(); ++i) {
       tried.positions[i] = x.segment<3>(3 * static_cast<long>(i));
-      for (const auto& f : domain_.faces)
-        if (!(f.plane.normal.dot(tried.positions[i]) < f.plane.offset - margin / 10))
-          return std::nullopt;
+      if (!domain_.contains(tried.positions[i], margin / 10)) return std::nullopt;
     }
     auto cells = reach_volumes(tried, domain_, targets_, volume_tolerance);
     if (!cells) return std::nullopt;

@@ -14,12 +14,6 @@ namespace {
 
 using core::Vec3;
 
-bool inside(const Vec3& x, const Domain& domain) {
-  return std::all_of(domain.faces.begin(), domain.faces.end(), [&](const DomainFace& face) {
-    return face.plane.normal.dot(x) <= face.plane.offset;
-  });
-}
-
 int seeds_a_cube(Morphology morphology) {
   if (morphology == Morphology::truncated_octahedra) return 2;
   return morphology == Morphology::rhombic_dodecahedra ? 4 : 1;
@@ -52,7 +46,7 @@ class Sampler {
     for (int i = 0; i < patience; ++i) {
       const double x = random_.uniform(), y = random_.uniform(), z = random_.uniform();
       Vec3 point = Vec3(x, y, z).cwiseProduct(domain_.size);
-      if (condition(point) && inside(point, domain_)) return point;
+      if (condition(point) && domain_.contains(point)) return point;
     }
     throw core::InputError("polycrystal: the domain has no room for seeds: it is too thin there");
   }
@@ -75,7 +69,7 @@ std::vector<Vec3> bamboo_seeds(const Domain& domain, int grains, int axis, Sampl
   for (int i = 0; i < grains; ++i) {
     Vec3 x = centre;
     x[axis] = spacing * (least * (i + 0.5) + (1 - least) * grains * at[i]);
-    if (!inside(x, domain))
+    if (!domain.contains(x))
       throw core::InputError(fmt::format(
           "bamboo: the body's middle line along {} leaves the body; choose another axis "
           "or shape",

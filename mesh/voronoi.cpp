@@ -344,16 +344,9 @@ std::optional<Tessellation> assemble(const std::vector<Vec3>& seeds,
   return std::nullopt;
 }
 
-bool inside(const Vec3& x, const Domain& domain) {
-  if (!x.allFinite()) return false;
-  return std::all_of(domain.faces.begin(), domain.faces.end(), [&](const DomainFace& face) {
-    return face.plane.normal.dot(x) <= face.plane.offset;
-  });
-}
-
 void check_inside(const std::vector<Vec3>& seeds, const Domain& domain) {
   for (std::size_t i = 0; i < seeds.size(); ++i)
-    if (!inside(seeds[i], domain))
+    if (!domain.contains(seeds[i]))
       throw core::InputError(
           fmt::format("seed {} at ({}, {}, {}) lies outside the {} [{}, {}, {}]: move it inside",
                       i + 1, seeds[i].x(), seeds[i].y(), seeds[i].z(), domain.shape,
