@@ -113,6 +113,13 @@ void add_stats(CLI::App& app, Command& c) {
   verb->callback([&c] { c.verb = Verb::stats; });
 }
 
+void add_report(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand("report", "Show a run in one HTML file, report.html");
+  verb->add_option("folder", c.folder, "Run folder")->required();
+  add_overwrite(*verb, c, "Replace a report.html that is none of ours");
+  verb->callback([&c] { c.verb = Verb::report; });
+}
+
 void add_reference(CLI::App& app, Command& c) {
   app.add_subcommand("reference", "Print the deck reference (docs/deck.md)")->callback([&c] {
     c.verb = Verb::reference;
@@ -153,6 +160,7 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
   add_mesh(app, command);
   add_convert(app, command);
   add_stats(app, command);
+  add_report(app, command);
   add_reference(app, command);
   require_verb(app, argc, argv);
   try {

@@ -8,7 +8,7 @@
 
 namespace polyslip::drivers {
 
-enum class Verb { none, run, check, mesh, convert, stats, reference };
+enum class Verb { none, run, check, mesh, convert, stats, report, reference };
 
 struct Command {
   Verb verb = Verb::none;
@@ -19,7 +19,7 @@ struct Command {
   std::string restart;  ///< --restart
   int threads = 1;
   int jobs = 0;        ///< --jobs; 0: one a core
-  std::string folder;  ///< convert: run folder, or a file that becomes `out`
+  std::string folder;  ///< convert: run folder, or a file that becomes `out`; report: run folder
   std::string format;  ///< convert, of `out`; empty: by its extension
   double at_strain = 0;
   std::string to;

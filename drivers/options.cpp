@@ -212,6 +212,10 @@ OutputOptions read_output(Deck& deck) {
        .help = "Files of each mesh, mesh-000.msh and so on: Gmsh's format 2.2 (msh, msh-binary) or "
                "4.1 (msh4, msh4-binary), one of these; vtu for ParaView; inp for Abaqus. "
                "docs/formats.md says what they hold."});
+  o.report =
+      t.boolean("report", {.fallback = o.report,
+                           .help = "Whether a run ends with report.html, one page that shows "
+                                   "it (docs/report.md)."});
   return o;
 }
 

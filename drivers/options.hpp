@@ -40,6 +40,7 @@ struct OutputOptions {
   double checkpoint_every_strain = 0.1;  ///< 0: at remeshings and the end only
   /// Of mesh files, mesh::mesh_format_names(); one of Gmsh's among them.
   std::vector<std::string> mesh_formats{"msh"};
+  bool report = true;  ///< report.html at the end
 };
 
 struct Options {

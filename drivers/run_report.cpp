@@ -7,6 +7,7 @@
 #include "core/version.hpp"
 #include "results/names.hpp"
 #include "results/picture.hpp"
+#include "results/report/report.hpp"
 #include "results/state_file.hpp"
 
 namespace polyslip::drivers {
@@ -113,6 +114,16 @@ void report_end(const std::string& folder, const results::StateSeries& states,
       remeshings.empty() ? "no strain" : remeshings, *summary.wall_s);
   log.info("results: {}", results::in_folder(folder, results::xdmf_name));
   log.info("picture: {}", picture);
+}
+
+void make_report(const std::string& folder, core::Log& log) {
+  try {
+    const auto path = results::report::write_report(
+        {.folder = folder, .page = results::report::page_path(), .overwrite = true});
+    log.info("report: {}", path);
+  } catch (const std::exception& e) {
+    log.warning(fmt::format("no report: {}", e.what()));
+  }
 }
 
 }  // namespace polyslip::drivers

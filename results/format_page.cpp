@@ -27,6 +27,7 @@ fails when the two differ.
 | `checkpoints/checkpoint-0000.h5`, ... | the last two checkpoints; files of the same type |
 | `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 (others by `[output] mesh_formats`; formats.md) |
 | `polycrystal.tess` | the regularised tessellation |
+| `report.html` | all of it in one page (report.md) |
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |
 

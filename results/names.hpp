@@ -39,6 +39,7 @@ inline constexpr std::string_view xdmf_name = "results.xdmf";
 inline constexpr std::string_view index_name = "index.json";  // in results/
 inline constexpr std::string_view tessellation_name = "polycrystal.tess";
 inline constexpr std::string_view picture_name = "polycrystal.png";
+inline constexpr std::string_view report_name = "report.html";
 
 /// folder + "/" + name
 inline std::string in_folder(std::string_view folder, std::string_view name) {

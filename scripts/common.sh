@@ -11,6 +11,11 @@ packages=(
   libgtest-dev libbenchmark-dev clang-format-14 python3
 )
 
+# What only the tests take: a browser for the report.
+test_packages=(chromium chromium-driver python3-selenium)
+# npm builds the report's page; it may be there without being a package.
+command -v npm >/dev/null || packages+=(nodejs npm)
+
 say() { printf '\n== %s\n' "$*"; }
 
 as_root() {

@@ -17,6 +17,7 @@
 #include "drivers/run.hpp"
 #include "drivers/stats_verb.hpp"
 #include "results/convert.hpp"
+#include "results/report/report.hpp"
 #include "solver/petsc_session.hpp"
 
 namespace {
@@ -100,6 +101,12 @@ int obey(const Command& command) {
       return convert(command);
     case Verb::stats:
       drivers::print_statistics(command.stats);
+      return drivers::exit_fine;
+    case Verb::report:
+      std::cout << results::report::write_report({.folder = command.folder,
+                                                  .page = results::report::page_path(),
+                                                  .overwrite = command.overwrite})
+                << '\n';
       return drivers::exit_fine;
     case Verb::reference:
       std::cout << drivers::deck_reference();

@@ -253,7 +253,9 @@ TEST(CommandLine, ThatCannotBeUnderstood) {
   sandbox.write("deck.toml", "");
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
       {{}, "A subcommand is required"},
-      {{"fly"}, "unknown verb 'fly'; there are run, check, mesh, convert, stats, reference"},
+      {{"fly"},
+       "unknown verb 'fly'; there are run, check, mesh, convert, stats, report, "
+       "reference"},
       {{"run"}, "run: a deck, or --restart DIR, is required"},
       {{"run", "deck.toml", "--threads", "0"}, "--threads: Value 0 not in range 1 to 1024"},
       {{"run", "deck.toml", "--threads", "two"}, "--threads: Value two not in range 1 to 1024"},

@@ -284,14 +284,15 @@ TEST_F(Outputs, MeshVerbMakesLinearElementsIfAsked) {
   EXPECT_EQ(grains_of(folder() / "linear/mesh-000.msh", 4), grains_of(run() / "mesh-000.msh", 11));
 }
 
-/// The last lines of a run: a summary, the path of the results, the path of the picture.
+/// The last lines of a run: a summary, the paths of results, picture and report.
 TEST_F(Outputs, LogEndsWithTheSummaryAndThePaths) {
   const auto lines = lines_of(slurp(run() / "log.txt"));
   ASSERT_GT(lines.size(), 10u);
   const auto n = lines.size();
-  EXPECT_NE(lines[n - 3].find("summary: 8 grains"), std::string::npos) << lines[n - 3];
-  EXPECT_NE(lines[n - 2].find("results: run/results.xdmf"), std::string::npos) << lines[n - 2];
-  EXPECT_NE(lines[n - 1].find("picture: run/polycrystal.png"), std::string::npos) << lines[n - 1];
+  EXPECT_NE(lines[n - 4].find("summary: 8 grains"), std::string::npos) << lines[n - 4];
+  EXPECT_NE(lines[n - 3].find("results: run/results.xdmf"), std::string::npos) << lines[n - 3];
+  EXPECT_NE(lines[n - 2].find("picture: run/polycrystal.png"), std::string::npos) << lines[n - 2];
+  EXPECT_NE(lines[n - 1].find("report: run/report.html"), std::string::npos) << lines[n - 1];
 }
 
 /// A run is never written over unless --overwrite says so; then nothing of the old one is left.

@@ -169,6 +169,7 @@ max_linear_iterations = 400
 at_strains = [0, 0.7]
 checkpoint_every_strain = 0
 mesh_formats = ["msh4", "vtu"]
+report = false
 )";
 
 /// Keys that have a meaning for some types of load only; loading_test.cpp has them.
@@ -253,6 +254,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.output.at_strains, (std::vector<double>{0, 0.7}));
   EXPECT_EQ(o.output.checkpoint_every_strain, 0);
   EXPECT_EQ(o.output.mesh_formats, (std::vector<std::string>{"msh4", "vtu"}));
+  EXPECT_FALSE(o.output.report);
   // The deck above would miss a key that is added later: each declared one is in it, but for those
   // that have a single value or exclude another.
   for (const auto& d : deck.declarations())

@@ -43,6 +43,7 @@ TEST(RunFolder, AnEarlierRunIsKeptUnlessAsked) {
                                       "mesh-000.msh",
                                       "polycrystal.png",
                                       "polycrystal.tess",
+                                      "report.html",
                                       "results.xdmf",
                                       "results/index.json",
                                       "results/state-0000.h5",
