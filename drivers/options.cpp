@@ -161,15 +161,68 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
   return o;
 }
 
+void read_wear(Deck::Table& t, remap::RemeshingOptions& o) {
+  remap::WearOptions& w = o.wear;
+  w.radius_ratio_share = t.number(
+      "radius_ratio_share",
+      {.fallback = w.radius_ratio_share,
+       .min = 0,
+       .max = 1,
+       .exclusive_max = true,
+       .help =
+           "The mesh is worn when its worst radius ratio, in the frame scaled back to isotropy, "
+           "is below this share of what it was when the mesh was new; 0: never."});
+  w.jacobian_share = t.number(
+      "jacobian_share",
+      {.fallback = w.jacobian_share,
+       .min = 0,
+       .max = 1,
+       .exclusive_max = true,
+       .help = "Likewise for the worst scaled Jacobian, det J of an element over its mean, at "
+               "corners and quadrature points; 0: not before one is negative."});
+  w.poor_radius_ratio = t.number("poor_radius_ratio",
+                                 {.fallback = w.poor_radius_ratio,
+                                  .min = 0,
+                                  .max = 1,
+                                  .help = "An element whose radius ratio, in that frame, is below "
+                                          "this is poor."});
+  w.poor_share_increase = t.number(
+      "poor_share_increase",
+      {.fallback = w.poor_share_increase,
+       .min = 0,
+       .max = 1,
+       .help = "The mesh is worn when the share of poor elements has grown by more than this; 1: "
+               "never."});
+  w.inversion_strain = t.number(
+      "inversion_strain",
+      {.fallback = w.inversion_strain,
+       .min = 0,
+       .max = 1,
+       .help = "The mesh is worn when an element would invert within this strain, were nodes to go "
+               "on as in the last step; 0: never."});
+  o.min_interval = t.number(
+      "min_interval",
+      {.fallback = o.min_interval,
+       .min = 0,
+       .max = 10,
+       .help = "No worn elements are looked for within this strain of the last remeshing."});
+}
+
 remap::RemeshingOptions read_remeshing(Deck& deck) {
   auto t = deck.table("remeshing", "When the deformed polycrystal gets a new mesh (section 2.3).");
   remap::RemeshingOptions o;
+  o.automatic = t.boolean(
+      "automatic",
+      {.fallback = o.automatic,
+       .help = "Whether to remesh when elements are worn, as the keys below say, or when no step "
+               "converges; false: at the given strains only."});
   o.at_strains =
       t.numbers("at_strains", {.fallback = std::vector<double>{},
                                .min = 0,
                                .exclusive_min = true,
                                .increasing = true,
                                .help = "Strains at which to remesh; below final_strain."});
+  read_wear(t, o);
   o.orthotropic_share = t.number(
       "orthotropic_share",
       {.fallback = o.orthotropic_share,

@@ -1,94 +1,21 @@
 #include "drivers/run.hpp"
 
 #include <filesystem>
-#include <memory>
-#include <optional>
 
 #include "core/deck.hpp"
 #include "core/error.hpp"
 #include "core/file.hpp"
-#include "core/log.hpp"
-#include "core/timer.hpp"
 #include "core/version.hpp"
 #include "drivers/deck_record.hpp"
-#include "drivers/generate.hpp"
-#include "drivers/mesh_files.hpp"
 #include "drivers/on_root.hpp"
-#include "drivers/options.hpp"
-#include "drivers/run_progress.hpp"
+#include "drivers/run_job.hpp"
 #include "drivers/run_report.hpp"
-#include "drivers/schedule.hpp"
-#include "remap/remesh.hpp"
-#include "results/checkpoint.hpp"
 #include "results/folder.hpp"
-#include "results/macro_csv.hpp"
 #include "results/names.hpp"
-#include "results/state_file.hpp"
-#include "results/state_series.hpp"
 #include "solver/load_program.hpp"
-#include "solver/model.hpp"
-#include "solver/snapshot_fields.hpp"
 
 namespace polyslip::drivers {
 namespace {
-
-const std::string progress_key = "progress";
-const std::string deck_text_key = "deck";
-
-/// rank 0's text on every rank
-void broadcast(MPI_Comm comm, std::string& text) {
-  int size = static_cast<int>(text.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  text.resize(static_cast<std::size_t>(size));
-  MPI_Bcast(text.data(), size, MPI_CHAR, 0, comm);
-}
-
-class Run {
- public:
-  Run(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool);
-  int go();
-
- private:
-  bool root() const { return rank_ == 0; }
-  std::string path(std::string_view name) const {
-    return results::in_folder(request_.folder, name);
-  }
-
-  void read_deck();
-  void require_own_deck(const mesh::Snapshot& checkpoint, const std::string& file) const;
-  mesh::Snapshot begin();
-  mesh::Snapshot begin_anew();
-  mesh::Snapshot take_up(const results::CheckpointFile& file);
-  void build_model(const mesh::Snapshot& snapshot);
-  void deform();
-  void step(double target);
-  void reach(const Event& event);
-  void store(const mesh::Snapshot& snapshot);
-  void write_checkpoint(mesh::Snapshot& snapshot);
-  void remesh(const mesh::Snapshot& old);
-  bool remeshing_is_due(const Event& event) const;
-  void stop(const std::string& reason);
-  void finish(bool completed);
-
-  MPI_Comm comm_;
-  int rank_ = 0;
-  RunRequest request_;
-  mesh::MesherPool& pool_;
-  core::Log log_;
-  core::StageTimes times_;
-  double wall_start_ = core::wall_seconds();
-  double strain_start_ = 0;
-  std::string deck_text_, resolved_, fingerprint_;
-  Options options_;
-  Input input_;  ///< of a run that begins; on rank 0
-  std::vector<Event> events_;
-  std::unique_ptr<material::CrystalLaw> law_;
-  std::unique_ptr<solver::Model> model_;
-  std::optional<results::MacroCsv> macro_;
-  std::optional<results::StateSeries> states_;
-  RunProgress progress_;
-  int mesh_number_ = 0;
-};
 
 int rank_of(MPI_Comm comm) {
   int rank = 0;
@@ -96,15 +23,29 @@ int rank_of(MPI_Comm comm) {
   return rank;
 }
 
-Run::Run(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool)
+}  // namespace
+
+void broadcast(MPI_Comm comm, std::string& text) {
+  int size = static_cast<int>(text.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  text.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(text.data(), size, MPI_CHAR, 0, comm);
+}
+
+RunJob::RunJob(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool)
     : comm_(comm),
       rank_(rank_of(comm)),
       request_(request),
       pool_(pool),
-      log_(rank_ == 0 ? core::Log() : core::Log::silent()) {}
+      log_(rank_ == 0 ? core::Log() : core::Log::silent()),
+      wall_start_(core::wall_seconds()) {}
+
+std::string RunJob::path(std::string_view name) const {
+  return results::in_folder(request_.folder, name);
+}
 
 /// A restart reads the deck as it was understood, whose paths are absolute.
-void Run::read_deck() {
+void RunJob::read_deck() {
   std::string file = request_.restart ? path(results::resolved_deck_name) : request_.deck;
   std::string text;
   const auto understand = [&] {
@@ -134,7 +75,7 @@ void Run::read_deck() {
                      solver::LoadProgram(options_.loading).planned_end());
 }
 
-void Run::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& file) const {
+void RunJob::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& file) const {
   results::require_same_deck(checkpoint, file, fingerprint_);
   const auto text = checkpoint.provenance.find(deck_text_key);
   if (text == checkpoint.provenance.end() || text->second != deck_text_)
@@ -142,7 +83,7 @@ void Run::require_own_deck(const mesh::Snapshot& checkpoint, const std::string& 
                            " was computed with; put the run's own deck back, or start a new run");
 }
 
-mesh::Snapshot Run::begin_anew() {
+mesh::Snapshot RunJob::begin_anew() {
   if (request_.restart) {
     require_unedited_deck(request_.folder);
     input_ = read_input(options_);
@@ -161,11 +102,10 @@ mesh::Snapshot Run::begin_anew() {
   return solver::initial_snapshot(std::move(mesh), input_.orientations, *law_);
 }
 
-mesh::Snapshot Run::take_up(const results::CheckpointFile& file) {
+mesh::Snapshot RunJob::take_up(const results::CheckpointFile& file) {
   mesh::Snapshot snapshot = results::read_checkpoint(file.path);
   require_own_deck(snapshot, file.path);
   progress_ = RunProgress::from_text(snapshot.provenance.at(progress_key));
-  mesh_number_ = snapshot.mesh_number;
   states_.emplace(request_.folder);
   states_->require_first(static_cast<std::size_t>(progress_.states));
   macro_ = results::MacroCsv::resume(path(results::macro_name), progress_.rows);
@@ -176,8 +116,8 @@ mesh::Snapshot Run::take_up(const results::CheckpointFile& file) {
   return snapshot;
 }
 
-/// On rank 0; the other ranks get an empty snapshot.
-mesh::Snapshot Run::begin() {
+/// On rank 0; the other ranks get an empty snapshot. Every rank knows how far the run is.
+mesh::Snapshot RunJob::begin() {
   mesh::Snapshot snapshot;
   on_root(comm_, [&] {
     if (!request_.restart) {
@@ -188,114 +128,21 @@ mesh::Snapshot Run::begin() {
     const auto file = results::newest_valid_checkpoint(request_.folder);
     snapshot = file ? take_up(*file) : begin_anew();
   });
-  MPI_Bcast(&mesh_number_, 1, MPI_INT, 0, comm_);
+  std::string progress = progress_.text();
+  broadcast(comm_, progress);
+  progress_ = RunProgress::from_text(progress);
   return snapshot;
 }
 
-void Run::build_model(const mesh::Snapshot& snapshot) {
+void RunJob::build_model(const mesh::Snapshot& snapshot) {
+  model_.reset();  // not two at a time
   model_ =
       std::make_unique<solver::Model>(comm_, snapshot, *law_, options_.loading, options_.solver,
                                       [this](const std::string& line) { log_.info(line); });
+  watch(snapshot);
 }
 
-void Run::store(const mesh::Snapshot& snapshot) {
-  on_root(comm_, [&] {
-    const auto measure = times_.measure("output");
-    states_->store(snapshot);
-    ++progress_.states;
-  });
-}
-
-void Run::write_checkpoint(mesh::Snapshot& snapshot) {
-  model_->drop_setup();
-  on_root(comm_, [&] {
-    const auto measure = times_.measure("output");
-    macro_->sync();
-    ++progress_.checkpoints;
-    RunProgress stored = progress_;
-    stored.cpu_s = total_times(progress_.cpu_s, times_);
-    stored.wall_s += core::wall_seconds() - wall_start_;
-    snapshot.provenance[results::deck_hash_key] = fingerprint_;
-    snapshot.provenance[deck_text_key] = deck_text_;
-    snapshot.provenance["version"] = core::version();
-    snapshot.provenance["seed"] = std::to_string(options_.polycrystal.seed);
-    snapshot.provenance[progress_key] = stored.text();
-    results::write_checkpoint(request_.folder, progress_.checkpoints, snapshot);
-  });
-}
-
-bool Run::remeshing_is_due(const Event& event) const {
-  if (!event.remesh) return false;
-  int due = 0;
-  for (double strain : options_.remeshing.at_strains) due += strain <= event.strain + same_strain;
-  return mesh_number_ < due;
-}
-
-void Run::remesh(const mesh::Snapshot& old) {
-  mesh::Snapshot fresh;
-  on_root(comm_, [&] {
-    const auto measure = times_.measure("remeshing");
-    const double workers = pool_.cpu_seconds();
-    remap::RemeshReport report;
-    fresh = remap::remesh(old, options_.mesh, options_.remeshing, pool_, report,
-                          [this](const std::string& line) { log_.warning(line); });
-    const auto load = old.history.find(solver::field::load_program);
-    if (load != old.history.end()) fresh.history.insert(*load);
-    times_.add("remeshing", pool_.cpu_seconds() - workers);
-    write_mesh_files(fresh.mesh, request_.folder, fresh.mesh_number, options_.output.mesh_formats);
-    log_.info(remeshing_text(report));
-    progress_.remeshings.push_back(remeshing_summary(report));
-    progress_.reload.start(old.strain, von_mises(progress_.stress));
-  });
-  progress_.just_remeshed = true;
-  ++mesh_number_;
-  build_model(fresh);
-  mesh::Snapshot snapshot = model_->snapshot();
-  store(snapshot);
-  write_checkpoint(snapshot);
-}
-
-void Run::step(double target) {
-  const bool after_remeshing = progress_.just_remeshed;
-  const auto record = [&] {
-    const auto measure = times_.measure("deformation");
-    return model_->step(target);
-  }();
-  progress_.add(record);
-  on_root(comm_, [&] {
-    macro_->append({record.strain, record.time, record.step_size, record.stress, record.fx_x1,
-                    record.fy_y1, record.fz_z1, record.newton_iterations, record.linear_iterations,
-                    after_remeshing, record.load_strain, record.load_stress, record.face_forces});
-    const double left = solver::LoadProgram(options_.loading).planned_end() - record.strain;
-    const double pace = (core::wall_seconds() - wall_start_) / (record.strain - strain_start_);
-    log_.info(step_text(record, pace * left));
-  });
-}
-
-void Run::reach(const Event& event) {
-  if (!event.store && !event.checkpoint && !event.remesh) return;
-  mesh::Snapshot snapshot = model_->snapshot();
-  if (event.store) store(snapshot);
-  if (event.checkpoint) write_checkpoint(snapshot);
-  if (remeshing_is_due(event)) remesh(snapshot);
-}
-
-void Run::deform() {
-  strain_start_ = model_->strain();
-  while (!model_->finished()) {
-    const Event* next = next_event(events_, model_->strain());
-    step(next ? next->strain : core::unbounded);
-    const Event* here = event_at(events_, model_->strain());
-    // A target of stress may end the load before its last event.
-    const Event end{model_->strain(), true, true, false, true};
-    if (model_->finished())
-      reach(here && here->final ? *here : end);
-    else if (here)
-      reach(*here);
-  }
-}
-
-void Run::finish(bool completed) {
+void RunJob::finish(bool completed) {
   if (!model_) return;
   const mesh::Snapshot last = model_->snapshot();
   const auto cpu_s = sum_over_ranks(comm_, progress_.cpu_s, times_);
@@ -313,9 +160,10 @@ void Run::finish(bool completed) {
 }
 
 /// Leaves a restartable state and says why.
-void Run::stop(const std::string& reason) {
+void RunJob::stop(const std::string& reason) {
   log_.error(reason);
   if (model_) {
+    progress_.last_attempt = -1;  // a restart may try again to remesh here
     mesh::Snapshot snapshot = model_->snapshot();
     write_checkpoint(snapshot);
     finish(false);
@@ -324,7 +172,22 @@ void Run::stop(const std::string& reason) {
                          request_.folder, request_.folder));
 }
 
-int Run::go() {
+/// The model, and what a run that was killed in a remeshing has still to do.
+void RunJob::start() {
+  const mesh::Snapshot snapshot = begin();
+  build_model(snapshot);
+  if (model_->strain() == 0 && progress_.states == 0) {
+    measure_new_mesh();
+    store(model_->snapshot());
+  }
+  strain_start_ = model_->strain();
+  if (progress_.due) {
+    log_.info("a remeshing is due: {}", progress_.due.reason);
+    if (remesh(snapshot)) arrive();
+  }
+}
+
+int RunJob::go() {
   read_deck();
   if (!request_.restart)
     on_root(comm_, [&] {
@@ -332,11 +195,7 @@ int Run::go() {
       results::check_deck_place(request_.folder, deck_text_, request_.overwrite);
     });
   try {
-    const mesh::Snapshot snapshot = begin();
-    build_model(snapshot);
-    if (mesh_number_ == 0 && model_->strain() == 0) store(model_->snapshot());
-    if (const Event* here = event_at(events_, model_->strain()); here && remeshing_is_due(*here))
-      remesh(snapshot);
+    start();
     deform();
     finish(true);
   } catch (const core::RecoverableError& e) {
@@ -346,10 +205,8 @@ int Run::go() {
   return exit_fine;
 }
 
-}  // namespace
-
 int run(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool) {
-  return Run(comm, request, pool).go();
+  return RunJob(comm, request, pool).go();
 }
 
 }  // namespace polyslip::drivers

@@ -7,10 +7,23 @@
 #include <vector>
 
 #include "drivers/reload.hpp"
+#include "remap/wear.hpp"
 #include "results/summary.hpp"
 #include "solver/model.hpp"
 
 namespace polyslip::drivers {
+
+/// What triggers a remeshing.
+inline const std::string at_strains = "at_strains", worn_out = "worn elements",
+                         failed_step = "failed step";
+
+/// A remeshing that is due, or under way when the checkpoint was written.
+struct DueRemeshing {
+  std::string trigger;  ///< one of those above; empty: none is due
+  std::string reason;   ///< in words
+
+  explicit operator bool() const { return !trigger.empty(); }
+};
 
 struct RunProgress {
   long rows = 0;        ///< of macro.csv
@@ -21,6 +34,12 @@ struct RunProgress {
   bool just_remeshed = false;      ///< the next row is the first on a new mesh
   std::array<double, 6> stress{};  ///< of the last step
   std::vector<results::RemeshingSummary> remeshings;
+  std::vector<results::FailedRemeshing> failed_remeshings;
+  DueRemeshing due;
+  remap::Wear fresh;        ///< of the present mesh when it left the mesher (no inversion_strain)
+  double watch_from = 0;    ///< strain from which on worn elements are looked for
+  double last_stored = -1;  ///< strain of the last stored state
+  double last_attempt = 0;  ///< strain of the last remeshing, failed ones too
   ReloadTracker reload;
   std::vector<std::pair<std::string, double>> cpu_s;  ///< of sessions before this one, by stage
   double wall_s = 0;                                  ///< likewise

@@ -54,7 +54,11 @@ results::RemeshingSummary remeshing_summary(const remap::RemeshReport& r) {
           r.min_radius_ratio_before,
           r.min_radius_ratio_after,
           r.max_grain_volume_change,
-          std::nullopt};
+          std::nullopt,
+          {},
+          {},
+          1,
+          static_cast<int>(r.meshing.copied_faces.size())};
 }
 
 CpuSeconds total_times(const CpuSeconds& earlier, const core::StageTimes& times) {
@@ -91,6 +95,7 @@ results::Summary summarise(const RunProgress& progress, const Options& options,
   s.newton_iterations = progress.newton_iterations;
   s.linear_iterations = progress.linear_iterations;
   s.remeshings = progress.remeshings;
+  s.failed_remeshings = progress.failed_remeshings;
   const auto& t = progress.stress;
   s.stress_final_mpa = {{{t[0], t[5], t[4]}, {t[5], t[1], t[3]}, {t[4], t[3], t[2]}}};
   s.version = core::version();

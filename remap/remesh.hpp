@@ -8,12 +8,16 @@
 #include "mesh/geometry.hpp"
 #include "mesh/snapshot.hpp"
 #include "mesh/volume_mesher.hpp"
+#include "remap/wear.hpp"
 
 namespace polyslip::remap {
 
 /// What a deck asks for in [remeshing].
 struct RemeshingOptions {
-  std::vector<double> at_strains{0.3};
+  bool automatic = true;           ///< besides at_strains: worn elements, steps that fail
+  std::vector<double> at_strains;  ///< increasing
+  WearOptions wear;
+  double min_interval = 0.05;  ///< strain; no worn elements are looked for on a younger mesh
   /// Share of the shortening that element sizes follow: 1 keeps the number of elements across a
   /// direction in which the polycrystal was compressed (the paper, section 3.1), 0 keeps their
   /// size.

@@ -27,6 +27,18 @@ std::map<int, std::string> checkpoints_in(const std::string& run_folder) {
   return found;
 }
 
+/// What is wrong with a checkpoint; empty if it is whole.
+std::string fault_of(const std::string& path) {
+  try {
+    verify_state(path);
+    return {};
+  } catch (const core::InputError& error) {
+    std::string what = error.what();
+    what.resize(std::min(what.size(), what.find(';')));
+    return what;
+  }
+}
+
 void remove_parts(const std::string& run_folder) {
   std::vector<fs::path> parts;
   for (const auto& entry : fs::directory_iterator(in_folder(run_folder, checkpoints_folder)))
@@ -55,17 +67,16 @@ std::optional<CheckpointFile> newest_valid_checkpoint(const std::string& run_fol
   const auto all = checkpoints_in(run_folder);
   if (all.empty()) return std::nullopt;
   const auto& [number, path] = *all.rbegin();
-  try {
-    verify_state(path);
-  } catch (const core::InputError& error) {
-    const std::string remedy =
-        all.size() > 1 ? fmt::format("to restart from {}", std::next(all.rbegin())->second)
-                       : std::string("to start over");
-    std::string what = error.what();
-    what.resize(std::min(what.size(), what.find(';')));
-    throw core::InputError(fmt::format("{}; delete this file {}", what, remedy));
+  const std::string fault = fault_of(path);
+  if (fault.empty()) return CheckpointFile{number, path};
+  std::string files = "this file";
+  for (auto older = std::next(all.rbegin()); older != all.rend(); ++older) {
+    if (fault_of(older->second).empty())
+      throw core::InputError(fmt::format("{}; delete {} to restart from {}, which is intact", fault,
+                                         files, older->second));
+    files += " and " + older->second + ", which is damaged too,";
   }
-  return CheckpointFile{number, path};
+  throw core::InputError(fmt::format("{}; delete {} to start over", fault, files));
 }
 
 mesh::Snapshot read_checkpoint(const std::string& path) { return read_state(path); }

@@ -22,8 +22,8 @@ struct CheckpointFile {
 };
 
 /// The newest checkpoint, whole and verified; none if there is none (interrupted writes do not
-/// count). InputError if the newest is damaged, which a kill cannot do: the line says which file to
-/// delete to go back to the one before. Touches nothing.
+/// count). InputError if the newest is damaged, which a kill cannot do: the line says what is
+/// wrong and which files to delete to go back to which older one that is whole. Touches nothing.
 std::optional<CheckpointFile> newest_valid_checkpoint(const std::string& run_folder);
 
 /// `read_state`.

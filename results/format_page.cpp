@@ -112,8 +112,10 @@ constexpr const char* summary_text_page = R"(## summary.json
 R_circ of the corners' tetrahedron), `steps`, `step_cuts`, `newton_iterations`,
 `linear_iterations`, `remeshings` (a list of `strain`, `elements_before`, `elements_after`,
 `min_radius_ratio_before`, `min_radius_ratio_after`, `max_grain_volume_change` relative,
-`strain_to_reload`: strain until the stress is back at the curve before, null if it never was),
-`stress_final_mpa` (3x3, volume average), `cpu_s` by stage, `wall_s`, `peak_rss_mb`, `version`,
+`strain_to_reload`: strain until the stress is back at the curve before, null if it never was;
+`trigger` "at_strains", "worn elements" or "failed step" and its `reason` in words, `attempts` until it
+succeeded, `copied_faces`), `failed_remeshings` (a list of `strain` and `reason`: the run stayed on the
+old mesh), `stress_final_mpa` (3x3, volume average), `cpu_s` by stage, `wall_s`, `peak_rss_mb`, `version`,
 `seed`. What does not apply (`polyslip mesh` has no steps) is left out.
 )";
 

@@ -16,7 +16,11 @@ Json to_json(const RemeshingSummary& r) {
             {"min_radius_ratio_before", r.min_radius_ratio_before},
             {"min_radius_ratio_after", r.min_radius_ratio_after},
             {"max_grain_volume_change", r.max_grain_volume_change},
-            {"strain_to_reload", nullptr}};
+            {"strain_to_reload", nullptr},
+            {"trigger", r.trigger},
+            {"reason", r.reason},
+            {"attempts", r.attempts},
+            {"copied_faces", r.copied_faces}};
   if (r.strain_to_reload) j["strain_to_reload"] = *r.strain_to_reload;
   return j;
 }
@@ -46,6 +50,11 @@ std::string summary_text(const Summary& s) {
   if (s.remeshings) {
     j["remeshings"] = Json::array();
     for (const auto& r : *s.remeshings) j["remeshings"].push_back(to_json(r));
+  }
+  if (s.failed_remeshings) {
+    j["failed_remeshings"] = Json::array();
+    for (const auto& f : *s.failed_remeshings)
+      j["failed_remeshings"].push_back({{"strain", f.strain}, {"reason", f.reason}});
   }
   add(j, "stress_final_mpa", s.stress_final_mpa);
   j["cpu_s"] = Json::object();

@@ -339,6 +339,16 @@ struct Model::Impl {
           mesh::Field{name, location, components, unit, transport, description, std::move(values)});
   }
 
+  /// [nodes] on rank 0 of [local_nodes][3]; empty elsewhere.
+  std::vector<core::Vec3> gathered(const std::vector<double>& values) const {
+    const auto all = distribution.gather_nodes(values, 3);
+    std::vector<core::Vec3> out;
+    out.reserve(all.size() / 3);
+    for (std::size_t i = 0; i + 2 < all.size(); i += 3)
+      out.emplace_back(all[i], all[i + 1], all[i + 2]);
+    return out;
+  }
+
   mesh::Snapshot snapshot() const {
     mesh::Snapshot out = base;
     const auto nodes = [&](const std::vector<double>& v) {
@@ -427,6 +437,10 @@ double Model::time() const { return impl_->time; }
 bool Model::finished() const { return impl_->program.finished(); }
 StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
+std::vector<core::Vec3> Model::positions() const { return impl_->gathered(impl_->now.x); }
+std::vector<core::Vec3> Model::departure_rates() const {
+  return impl_->gathered(impl_->predictor.rate());
+}
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
 
 mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,

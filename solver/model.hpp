@@ -58,6 +58,11 @@ class Model {
   StepRecord step(double target_strain);
   /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.
   void drop_setup();
+  /// Of the nodes, on rank 0; empty elsewhere.
+  std::vector<core::Vec3> positions() const;
+  /// Change of the positions per unit strain in the last step, beyond the homogeneous motion; zero
+  /// at the start of a stage. On rank 0; empty elsewhere.
+  std::vector<core::Vec3> departure_rates() const;
   /// Mesh, state, derived fields and history on rank 0; an empty snapshot elsewhere.
   mesh::Snapshot snapshot() const;
 

@@ -117,16 +117,16 @@ TEST_F(Folder, WithATruncatedCheckpoint) {
   restart_rejected(
       "run/checkpoints/checkpoint-0002.h5: is damaged (4488 bytes after the header instead of " +
       std::to_string(whole.size() - 512) +
-      "); delete this file to restart from run/checkpoints/checkpoint-0001.h5");
+      "); delete this file to restart from run/checkpoints/checkpoint-0001.h5, which is intact");
   damage(whole.substr(0, whole.size() - 1));
-  restart_rejected("run/checkpoints/checkpoint-0002.h5: is damaged (" +
-                   std::to_string(whole.size() - 513) + " bytes after the header instead of " +
-                   std::to_string(whole.size() - 512) +
-                   "); delete this file to restart from run/checkpoints/checkpoint-0001.h5");
+  restart_rejected(
+      "run/checkpoints/checkpoint-0002.h5: is damaged (" + std::to_string(whole.size() - 513) +
+      " bytes after the header instead of " + std::to_string(whole.size() - 512) +
+      "); delete this file to restart from run/checkpoints/checkpoint-0001.h5, which is intact");
   damage("");
   restart_rejected(
       "run/checkpoints/checkpoint-0002.h5: is damaged (only 0 bytes long); delete this file to "
-      "restart from run/checkpoints/checkpoint-0001.h5");
+      "restart from run/checkpoints/checkpoint-0001.h5, which is intact");
 }
 
 TEST_F(Folder, WithAFlippedBitInACheckpoint) {
@@ -137,7 +137,7 @@ TEST_F(Folder, WithAFlippedBitInACheckpoint) {
     damage(flipped);
     restart_rejected(
         "run/checkpoints/checkpoint-0002.h5: is damaged (checksum does not match); delete this "
-        "file to restart from run/checkpoints/checkpoint-0001.h5");
+        "file to restart from run/checkpoints/checkpoint-0001.h5, which is intact");
   }
 }
 

@@ -158,6 +158,13 @@ final_time = 300
 final_stress = 40
 [remeshing]
 at_strains = [0.2, 0.4]
+automatic = false
+radius_ratio_share = 0.4
+jacobian_share = 0.3
+poor_radius_ratio = 0.15
+poor_share_increase = 0.05
+inversion_strain = 0.04
+min_interval = 0.07
 orthotropic_share = 0.5
 max_grain_volume_change = 0.01
 [solver]
@@ -245,6 +252,13 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.loading.final_time, 300);
   EXPECT_EQ(o.loading.final_stress, 40);
   EXPECT_EQ(o.remeshing.at_strains, (std::vector<double>{0.2, 0.4}));
+  EXPECT_FALSE(o.remeshing.automatic);
+  EXPECT_EQ(o.remeshing.wear.radius_ratio_share, 0.4);
+  EXPECT_EQ(o.remeshing.wear.jacobian_share, 0.3);
+  EXPECT_EQ(o.remeshing.wear.poor_radius_ratio, 0.15);
+  EXPECT_EQ(o.remeshing.wear.poor_share_increase, 0.05);
+  EXPECT_EQ(o.remeshing.wear.inversion_strain, 0.04);
+  EXPECT_EQ(o.remeshing.min_interval, 0.07);
   EXPECT_EQ(o.remeshing.orthotropic_share, 0.5);
   EXPECT_EQ(o.remeshing.max_grain_volume_change, 0.01);
   EXPECT_EQ(o.solver.newton_tolerance, 1e-9);

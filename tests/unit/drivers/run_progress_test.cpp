@@ -10,7 +10,8 @@ namespace {
 TEST(RunProgress, CountsStepsAndTheReloading) {
   RunProgress p;
   p.just_remeshed = true;
-  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, std::nullopt});
+  p.remeshings.push_back(
+      {0.3, 10, 12, 0.1, 0.2, 1e-4, std::nullopt, "at_strains", "the deck asks", 1, 0});
   p.reload.start(0.3, 20);
   solver::StepRecord step;
   step.strain = 0.302;
@@ -39,8 +40,14 @@ TEST(RunProgress, ComesBackFromItsText) {
   p.elements_initial = 3456;
   p.just_remeshed = true;
   p.stress = {0.1, 1.0 / 3, -27.123456789012345, 0, 1e-17, 2};
-  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, 0.0021});
-  p.remeshings.push_back({0.5, 12, 13, 0.1, 0.2, 1e-4, std::nullopt});
+  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, 0.0021, at_strains, "the deck", 1, 0});
+  p.remeshings.push_back({0.5, 12, 13, 0.1, 0.2, 1e-4, std::nullopt, worn_out, "0.1", 3, 2});
+  p.failed_remeshings.push_back({0.4, "grain 3"});
+  p.due = {failed_step, "no step"};
+  p.fresh = {0.2, 0.01, 0.7, 0};
+  p.watch_from = 0.55;
+  p.last_attempt = 0.5;
+  p.last_stored = 0.48;
   p.reload.start(0.5, 31.7);
   p.cpu_s = {{"meshing", 1.25}, {"deformation", 17.5}};
   p.wall_s = 12.5;
@@ -51,6 +58,13 @@ TEST(RunProgress, ComesBackFromItsText) {
   EXPECT_TRUE(q.reload.state.active);
   ASSERT_EQ(q.remeshings.size(), 2u);
   EXPECT_EQ(*q.remeshings[0].strain_to_reload, 0.0021);
+  EXPECT_EQ(q.remeshings[1].trigger, worn_out);
+  EXPECT_EQ(q.remeshings[1].attempts, 3);
+  ASSERT_EQ(q.failed_remeshings.size(), 1u);
+  EXPECT_EQ(q.failed_remeshings[0].reason, "grain 3");
+  EXPECT_EQ(q.due.reason, "no step");
+  EXPECT_EQ(q.fresh.worst_jacobian, 0.7);
+  EXPECT_EQ(q.watch_from, 0.55);
   EXPECT_FALSE(q.remeshings[1].strain_to_reload);
 }
 

@@ -1,0 +1,126 @@
+// The steps of a run, and what is done between them.
+
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/version.hpp"
+#include "drivers/on_root.hpp"
+#include "drivers/run_job.hpp"
+#include "drivers/run_report.hpp"
+#include "results/names.hpp"
+#include "solver/load_program.hpp"
+
+namespace polyslip::drivers {
+
+void RunJob::store(const mesh::Snapshot& snapshot) {
+  on_root(comm_, [&] {
+    const auto measure = times_.measure("output");
+    states_->store(snapshot);
+    ++progress_.states;
+  });
+  progress_.last_stored = snapshot.strain;
+  MPI_Bcast(&progress_.last_stored, 1, MPI_DOUBLE, 0, comm_);
+}
+
+bool RunJob::stored_here() const {
+  return std::abs(progress_.last_stored - model_->strain()) <= same_strain;
+}
+
+void RunJob::write_checkpoint(mesh::Snapshot& snapshot) {
+  model_->drop_setup();
+  on_root(comm_, [&] {
+    const auto measure = times_.measure("output");
+    macro_->sync();
+    ++progress_.checkpoints;
+    RunProgress stored = progress_;
+    stored.cpu_s = total_times(progress_.cpu_s, times_);
+    stored.wall_s += core::wall_seconds() - wall_start_;
+    snapshot.provenance[results::deck_hash_key] = fingerprint_;
+    snapshot.provenance[deck_text_key] = deck_text_;
+    snapshot.provenance["version"] = core::version();
+    snapshot.provenance["seed"] = std::to_string(options_.polycrystal.seed);
+    snapshot.provenance[progress_key] = stored.text();
+    results::write_checkpoint(request_.folder, progress_.checkpoints, snapshot);
+  });
+}
+
+double RunJob::next_target() const {
+  const Event* next = next_event(events_, model_->strain());
+  return next ? next->strain : core::unbounded;
+}
+
+void RunJob::step() {
+  const auto taken = [&] {
+    const auto measure = times_.measure("deformation");
+    return model_->step(next_target());
+  }();
+  record(taken);
+}
+
+void RunJob::record(const solver::StepRecord& step) {
+  const bool after_remeshing = progress_.just_remeshed;
+  progress_.add(step);
+  on_root(comm_, [&] {
+    macro_->append({step.strain, step.time, step.step_size, step.stress, step.fx_x1, step.fy_y1,
+                    step.fz_z1, step.newton_iterations, step.linear_iterations, after_remeshing,
+                    step.load_strain, step.load_stress, step.face_forces});
+    const double left = solver::LoadProgram(options_.loading).planned_end() - step.strain;
+    const double pace = (core::wall_seconds() - wall_start_) / (step.strain - strain_start_);
+    log_.info(step_text(step, pace * left));
+  });
+}
+
+void RunJob::advance() {
+  try {
+    step();
+  } catch (const core::RecoverableError& error) {
+    // A new mesh has a step's worth of strain behind it: one made here would be the same again.
+    const bool tried_here = model_->strain() <= progress_.last_attempt + same_strain;
+    if (!options_.remeshing.automatic || tried_here) throw;
+    progress_.due = {failed_step, error.what()};
+    mesh::Snapshot snapshot = model_->snapshot();
+    if (!stored_here()) store(snapshot);
+    write_checkpoint(snapshot);
+    remesh(snapshot);
+  }
+}
+
+/// What the schedule has here; the end comes with a target of stress or time too.
+Event RunJob::event_here() const {
+  const Event* here = event_at(events_, model_->strain());
+  Event event = here ? *here : Event{.strain = model_->strain()};
+  if (model_->finished() && !event.final)
+    event = {.strain = event.strain, .store = true, .checkpoint = true, .final = true};
+  return event;
+}
+
+DueRemeshing RunJob::due_here(const Event& event) {
+  if (model_->finished()) return {};
+  if (event.remesh && progress_.last_attempt + same_strain < event.strain)
+    return {at_strains, fmt::format("the deck asks for it at strain {:g}", event.strain)};
+  if (const std::string reason = worn_elements(); !reason.empty()) return {worn_out, reason};
+  return {};
+}
+
+void RunJob::arrive() {
+  for (;;) {
+    const Event event = event_here();
+    progress_.due = due_here(event);
+    const bool due = static_cast<bool>(progress_.due);
+    if (!event.store && !event.checkpoint && !due) return;
+    mesh::Snapshot snapshot = model_->snapshot();
+    if (event.store || due) store(snapshot);
+    if (event.checkpoint || due) write_checkpoint(snapshot);
+    // A remeshing ends with a step, and so at another strain.
+    if (!due || !remesh(snapshot)) return;
+  }
+}
+
+void RunJob::deform() {
+  while (!model_->finished()) {
+    advance();
+    arrive();
+  }
+}
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,107 @@
+#pragma once
+// One call of `polyslip run`: what it holds, and its stages. Collective but where said otherwise.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/log.hpp"
+#include "core/timer.hpp"
+#include "drivers/generate.hpp"
+#include "drivers/mesh_watch.hpp"
+#include "drivers/options.hpp"
+#include "drivers/remeshing_attempts.hpp"
+#include "drivers/run.hpp"
+#include "drivers/run_progress.hpp"
+#include "drivers/schedule.hpp"
+#include "results/checkpoint.hpp"
+#include "results/macro_csv.hpp"
+#include "results/state_series.hpp"
+#include "solver/model.hpp"
+
+namespace polyslip::drivers {
+
+/// Names of what a checkpoint keeps of a run, in its snapshot's provenance.
+inline const std::string progress_key = "progress", deck_text_key = "deck";
+
+class RunJob {
+ public:
+  RunJob(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool);
+  /// The exit code.
+  int go();
+
+ private:
+  bool root() const { return rank_ == 0; }
+  std::string path(std::string_view name) const;
+
+  // run.cpp: from the deck, or a checkpoint, to the first step
+  void read_deck();
+  void require_own_deck(const mesh::Snapshot& checkpoint, const std::string& file) const;
+  mesh::Snapshot begin();
+  mesh::Snapshot begin_anew();
+  mesh::Snapshot take_up(const results::CheckpointFile& file);
+  void build_model(const mesh::Snapshot& snapshot);
+  void start();
+
+  // run.cpp: the end
+  void stop(const std::string& reason);
+  void finish(bool completed);
+
+  // run_deformation.cpp
+  void deform();
+  /// One step, or a remeshing and a step, because none converged.
+  void advance();
+  /// One step, counted and written.
+  void step();
+  double next_target() const;
+  void record(const solver::StepRecord& step);
+  /// Stores, writes checkpoints and remeshes, as is due at this strain.
+  void arrive();
+  Event event_here() const;
+  DueRemeshing due_here(const Event& event);
+  void store(const mesh::Snapshot& snapshot);
+  bool stored_here() const;
+  void write_checkpoint(mesh::Snapshot& snapshot);
+
+  // run_remeshing.cpp
+  /// Begins to follow the wear of the mesh that the snapshot, on rank 0, has.
+  void watch(const mesh::Snapshot& snapshot);
+  /// Notes what the mesh is like as it left the mesher.
+  void measure_new_mesh();
+  remap::Wear wear();
+  /// Why the elements are worn; empty if they are not.
+  std::string worn_elements();
+  /// `progress_.due`, from the state `old` (on rank 0), of which a checkpoint was written. True
+  /// after a step on a new mesh; false if the run goes on from `old`, on its mesh. Throws
+  /// RecoverableError, with the model as in `old`, if it cannot.
+  bool remesh(const mesh::Snapshot& old);
+  void try_remeshing(const RemeshingAttempt& attempt, int number, const mesh::Snapshot& old);
+  mesh::Snapshot new_mesh(const RemeshingAttempt& attempt, const mesh::Snapshot& old,
+                          remap::RemeshReport& report);
+  void keep_old_mesh(const mesh::Snapshot& old, const std::string& reason);
+
+  MPI_Comm comm_;
+  int rank_ = 0;
+  RunRequest request_;
+  mesh::MesherPool& pool_;
+  core::Log log_;
+  core::StageTimes times_;
+  double wall_start_;
+  double strain_start_ = 0;
+  std::string deck_text_, resolved_, fingerprint_;
+  Options options_;
+  Input input_;  ///< of a run that begins; on rank 0
+  std::vector<Event> events_;
+  std::unique_ptr<material::CrystalLaw> law_;
+  std::unique_ptr<solver::Model> model_;
+  std::optional<MeshWatch> watch_;  ///< on rank 0
+  std::optional<results::MacroCsv> macro_;
+  std::optional<results::StateSeries> states_;
+  RunProgress progress_;
+};
+
+/// rank 0's text on every rank
+void broadcast(MPI_Comm comm, std::string& text);
+
+}  // namespace polyslip::drivers

@@ -1,0 +1,53 @@
+// How the elements of a run wear: `wear_history RUN_FOLDER`, one line a stored state.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "core/error.hpp"
+#include "remap/wear.hpp"
+#include "results/state_file.hpp"
+#include "results/state_series.hpp"
+
+namespace {
+
+using namespace polyslip;
+
+/// The predictor's departure from the homogeneous motion; zero in a state without it.
+std::vector<core::Vec3> rates_of(const mesh::Snapshot& snapshot) {
+  std::vector<core::Vec3> rates(snapshot.mesh.nodes.size(), core::Vec3::Zero());
+  if (const auto* f = snapshot.find("solver_rate", mesh::Location::node))
+    for (std::size_t n = 0; n < rates.size(); ++n)
+      rates[n] = {f->values[3 * n], f->values[3 * n + 1], f->values[3 * n + 2]};
+  return rates;
+}
+
+void print(const mesh::Snapshot& s) {
+  remap::WearOptions options;
+  options.inversion_strain = 0.2;
+  const auto frame = remap::isotropy_frame(remap::initial_positions(s), s.mesh.nodes);
+  const auto rates = rates_of(s);
+  const auto wear = remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, rates, frame, options, 1);
+  fmt::print("{:8.4f} {:5d} {:9d} {:8.4f} {:8.4f} {:8.3f} {:9.4f}\n", s.strain, s.mesh_number,
+             s.mesh.element_count(), wear.worst_radius_ratio, wear.worst_jacobian,
+             100 * wear.poor_share, wear.inversion_strain);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: wear_history RUN_FOLDER\n");
+    return 2;
+  }
+  try {
+    const results::StateSeries series(argv[1]);
+    fmt::print("  strain  mesh  elements  radius  jacobian  poor, %  inversion\n");
+    for (const auto& state : series.states()) print(results::read_state(series.path(state)));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

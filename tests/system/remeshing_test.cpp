@@ -1,0 +1,174 @@
+// What makes a run remesh, and what it does when that fails.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "results/names.hpp"
+#include "system/small_run.hpp"
+
+namespace polyslip::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr int exit_stopped = 3;
+
+/// Eight grains to 0.06; further lines go into [loading], [remeshing], [solver].
+std::string deck_of(const std::string& polycrystal, const std::string& loading,
+                    const std::string& remeshing, const std::string& solver = "") {
+  return polycrystal + "[loading]\nmax_strain_increment = 0.01\n" + loading + "[remeshing]\n" +
+         remeshing + "[solver]\n" + solver + "[output]\ncheckpoint_every_strain = 0.02\n";
+}
+
+const std::string grown =
+    "[polycrystal]\ngrains = 8\nseed = 1\n[mesh]\nelement_size = 0.8\nmeshers = [\"gmsh-hxt\"]\n";
+/// Meshed before, so that faults of meshers strike remeshings only.
+const std::string meshed = "[mesh]\nelement_size = 0.8\nfile = \"meshed/mesh-000.msh\"\n";
+const std::string to_the_end = "final_strain = 0.06\n";
+const std::string wears_soon = "radius_ratio_share = 0.995\nmin_interval = 0.025\n";
+/// After a reversal three iterations are not enough for steps this large, on an old mesh.
+const std::string reverses =
+    "initial_strain_increment = 5e-4\nmin_strain_increment = 4e-4\n"
+    "[[loading.stage]]\nstrain = 0.02\n[[loading.stage]]\nstrain = 0.01\n";
+
+/// The variable that makes meshers fail, while it lives.
+class MesherFaults {
+ public:
+  explicit MesherFaults(const std::string& faults) {
+    ::setenv("POLYSLIP_MESHER_FAULT", faults.c_str(), 1);
+  }
+  ~MesherFaults() { ::unsetenv("POLYSLIP_MESHER_FAULT"); }
+  MesherFaults(const MesherFaults&) = delete;
+  MesherFaults& operator=(const MesherFaults&) = delete;
+};
+
+void make_first_mesh(const Sandbox& sandbox) {
+  sandbox.write("meshed.toml", grown);
+  const Outcome made = run_polyslip({"mesh", "meshed.toml", "--out", "meshed"}, sandbox.path());
+  ASSERT_EQ(made.code, 0) << made.err;
+}
+
+json summary_of(const Sandbox& sandbox) {
+  return json::parse(slurp(sandbox.path() / "run/summary.json"));
+}
+
+TEST(Remeshing, OfWornElementsComesByItself) {
+  const Sandbox sandbox;
+  run_deck(sandbox, 2, deck_of(grown, to_the_end, wears_soon), "run");
+  ASSERT_FALSE(HasFailure());
+  const json s = summary_of(sandbox);
+  ASSERT_GE(s.at("remeshings").size(), 2u);
+  double last = -1;
+  for (const json& r : s["remeshings"]) {
+    EXPECT_EQ(r.at("trigger"), "worn elements");
+    EXPECT_NE(r.at("reason").get<std::string>().find("radius_ratio_share = 0.995"),
+              std::string::npos);
+    EXPECT_EQ(r.at("attempts"), 1);
+    EXPECT_GE(r.at("strain").get<double>(), last);
+    last = r["strain"].get<double>() + 0.025;  // min_interval
+    EXPECT_NE(slurp(sandbox.path() / "run/log.txt").find(r["reason"].get<std::string>()),
+              std::string::npos);
+  }
+  // Both sides of each are stored, besides start and end.
+  EXPECT_EQ(state_count(sandbox.path() / "run"), 2 + 2 * s["remeshings"].size());
+  EXPECT_TRUE(s.at("failed_remeshings").empty());
+}
+
+TEST(Remeshing, IsLeftAloneIfTheDeckSaysSo) {
+  const Sandbox sandbox;
+  run_deck(sandbox, 0, deck_of(grown, to_the_end, wears_soon + "automatic = false\n"), "run");
+  ASSERT_FALSE(HasFailure());
+  EXPECT_TRUE(summary_of(sandbox).at("remeshings").empty());
+}
+
+/// Killed at the checkpoint that comes before the first remeshing.
+TEST(Remeshing, OfWornElementsComesAgainAfterAKill) {
+  const Sandbox sandbox;
+  const std::string deck = deck_of(grown, to_the_end, wears_soon);
+  run_deck(sandbox, 0, deck, "undisturbed");
+  sandbox.write("run.toml", deck);
+  const fs::path run = sandbox.path() / "run";
+  Program program(on_ranks(0, {"run", "run.toml", "--out", "run"}), sandbox.path());
+  ASSERT_TRUE(eventually(120, [&] {
+    return fs::exists(run / "checkpoints" / results::checkpoint_name(1)) || program.ended();
+  }));
+  program.kill({});
+  EXPECT_EQ(program.wait().code, 128 + SIGKILL);
+  const Outcome outcome = run_polyslip({"run", "--restart", "run"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("a remeshing is due: worst radius ratio"), std::string::npos)
+      << outcome.out;
+  EXPECT_EQ(slurp(run / "macro.csv"), slurp(sandbox.path() / "undisturbed/macro.csv"));
+  expect_identical(last_state(sandbox.path() / "undisturbed"), last_state(run));
+}
+
+TEST(Remeshing, ComesWhenNoStepConverges) {
+  const Sandbox sandbox;
+  run_deck(sandbox, 0, deck_of(grown, reverses, "", "max_newton_iterations = 3\n"), "run");
+  ASSERT_FALSE(HasFailure());
+  const json s = summary_of(sandbox);
+  ASSERT_EQ(s.at("remeshings").size(), 1u);
+  EXPECT_EQ(s["remeshings"][0].at("trigger"), "failed step");
+  EXPECT_EQ(s.at("final_strain"), json(0.03));  // the path, there and back
+}
+
+TEST(Remeshing, GoesOnToTheNextMesherWhenOneFails) {
+  const Sandbox sandbox;
+  make_first_mesh(sandbox);
+  const MesherFaults faults("gmsh-hxt:1:throw");
+  run_deck(sandbox, 0,
+           deck_of(meshed + "meshers = [\"gmsh-hxt\"]\n", to_the_end, "at_strains = [0.03]\n"),
+           "run");
+  ASSERT_FALSE(HasFailure());
+  const json s = summary_of(sandbox);
+  ASSERT_EQ(s.at("remeshings").size(), 1u);
+  EXPECT_EQ(s["remeshings"][0].at("attempts"), 2);
+}
+
+TEST(Remeshing, ThatFailsLeavesTheOldMesh) {
+  const Sandbox sandbox;
+  make_first_mesh(sandbox);
+  const MesherFaults faults("gmsh-hxt:1:throw,gmsh-delaunay:1:throw,netgen:1:throw");
+  const std::string deck = deck_of(meshed, to_the_end, "at_strains = [0.03]\n");
+  sandbox.write("run.toml", deck);
+  const Outcome outcome = run_polyslip({"run", "run.toml", "--out", "run"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: strain 0.03: going on with the old mesh"), std::string::npos)
+      << outcome.err;
+  const json s = summary_of(sandbox);
+  EXPECT_TRUE(s.at("remeshings").empty());
+  ASSERT_EQ(s.at("failed_remeshings").size(), 1u);
+  EXPECT_EQ(s["failed_remeshings"][0].at("strain"), json(0.03));
+  EXPECT_NE(s["failed_remeshings"][0].at("reason").get<std::string>().find("grain 2"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(sandbox.path() / "run/mesh-001.msh"));
+  for (const MacroRow& row : read_macro(sandbox.path() / "run")) EXPECT_FALSE(row.remeshed);
+}
+
+/// No step converges and no mesh can be made: the run stops, says why, and can go on once the
+/// reason is gone.
+TEST(Remeshing, ThatFailsWhereNoStepConvergesStopsTheRun) {
+  const Sandbox sandbox;
+  make_first_mesh(sandbox);
+  sandbox.write("run.toml", deck_of(meshed, reverses, "", "max_newton_iterations = 3\n"));
+  {
+    const MesherFaults faults("gmsh-hxt:1:throw,gmsh-delaunay:1:throw,netgen:1:throw");
+    const Outcome outcome = run_polyslip({"run", "run.toml", "--out", "run"}, sandbox.path());
+    EXPECT_EQ(outcome.code, exit_stopped) << outcome.err;
+    EXPECT_NE(outcome.err.find("no step converges on the old mesh, and no new one could be made; "
+                               "last failure: grain 2 could not be meshed"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_EQ(summary_of(sandbox).at("completed"), json(false));
+  }
+  const Outcome outcome = run_polyslip({"run", "--restart", "run"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(summary_of(sandbox).at("remeshings").at(0).at("trigger"), "failed step");
+}
+
+}  // namespace
+}  // namespace polyslip::tests
