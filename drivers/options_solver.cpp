@@ -1,6 +1,11 @@
 // The keys of [solver].
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
 #include "drivers/options_sections.hpp"
+#include "mesh/quadrature.hpp"
 
 namespace polyslip::drivers {
 
@@ -17,6 +22,24 @@ solver::SolverOptions read_solver(Deck& deck) {
     return static_cast<int>(
         t.integer(key, {.fallback = fallback, .min = 1, .max = 1'000'000, .help = help}));
   };
+  o.element = t.text(
+      "element",
+      {.fallback = o.element,
+       .choices = {"mixed", "displacement"},
+       .help = "mixed: ten-node tetrahedra with one constant pressure each. displacement: the "
+               "same without a pressure of its own, as other programs have it, for comparison: it "
+               "is too stiff, and its stresses oscillate."});
+  o.quadrature_points = static_cast<int>(t.integer(
+      "quadrature_points",
+      {.fallback = o.quadrature_points,
+       .min = 1,
+       .help = "Points of an element that carry state: 4, 8, 14 or 15, exact for polynomials of "
+               "degree 2, 3, 5 and 5, all with positive weights. The first of 15 is the centroid. "
+               "Time and memory grow with them."}));
+  const auto& known = mesh::tet_quadrature_sizes;
+  if (std::find(known.begin(), known.end(), o.quadrature_points) == known.end())
+    t.fault("quadrature_points", fmt::format("quadrature_points = {} must be one of {}",
+                                             o.quadrature_points, fmt::join(known, ", ")));
   o.newton_tolerance = tolerance(
       "newton_tolerance", o.newton_tolerance,
       "A step has converged when the forces out of balance at free nodes are this small "

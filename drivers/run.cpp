@@ -99,7 +99,8 @@ mesh::Snapshot RunJob::begin_anew() {
   progress_.elements_initial = mesh.element_count();
   macro_ = results::MacroCsv::create(path(results::macro_name));
   states_.emplace(request_.folder);
-  return solver::initial_snapshot(std::move(mesh), input_.orientations, *law_);
+  return solver::initial_snapshot(std::move(mesh), input_.orientations, *law_,
+                                  options_.solver.quadrature_points);
 }
 
 mesh::Snapshot RunJob::take_up(const results::CheckpointFile& file) {

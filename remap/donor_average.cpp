@@ -13,15 +13,6 @@ namespace {
 using core::Quaternion;
 using core::Vec3;
 
-/// Points stand in the order of the four-point rule; others are not in use.
-auto quadrature_rule(const mesh::Snapshot& snapshot) {
-  if (snapshot.quadrature_points != 4)
-    throw core::InternalError("transport: a state at " +
-                              std::to_string(snapshot.quadrature_points) +
-                              " points an element is not known");
-  return mesh::tet_quadrature_4();
-}
-
 Quaternion quaternion_at(const std::vector<double>& values, std::size_t index) {
   return {values[4 * index], values[4 * index + 1], values[4 * index + 2], values[4 * index + 3]};
 }
@@ -29,7 +20,7 @@ Quaternion quaternion_at(const std::vector<double>& values, std::size_t index) {
 }  // namespace
 
 std::vector<double> point_volumes(const mesh::Snapshot& snapshot) {
-  const auto rule = quadrature_rule(snapshot);
+  const auto rule = mesh::tet_quadrature(snapshot.quadrature_points);
   std::vector<std::array<Vec3, 10>> gradients;
   for (const auto& point : rule) gradients.push_back(mesh::tet10_gradients(point.xi));
   std::vector<double> volumes;

@@ -48,15 +48,23 @@ void measure(const std::array<Vec3, 10>& x, double& volume, Vec3& centroid) {
   centroid /= volume;
 }
 
-/// Share of each quadrature point in its element's value; they add up to 1.
+/// Share of each quadrature point in its element's value; they add up to 1. At the centroid: the
+/// first of fifteen points, which lies there, or the best linear function through the points, which
+/// by the symmetry of the rules is their mean with the weights of the rule.
 std::vector<double> point_weights(const std::array<Vec3, 10>& x, int points, ElementValue value) {
-  std::vector<double> w(points, 1.0 / points);
-  if (value == ElementValue::centroid || points == 1) return w;
-  static const auto rule = mesh::tet_quadrature_4();
+  if (points == 1) return {1.0};
+  std::vector<double> w;
+  if (points == 15 && value == ElementValue::centroid) {
+    w.assign(15, 0.0);
+    w[0] = 1;
+    return w;
+  }
   double total = 0;
-  for (int p = 0; p < points; ++p) {
-    w[p] = mesh::tet10_jacobian(x, mesh::tet10_gradients(rule[p].xi)).determinant();
-    total += w[p];
+  for (const auto& point : mesh::tet_quadrature(points)) {
+    w.push_back(point.weight);
+    if (value == ElementValue::average)
+      w.back() *= mesh::tet10_jacobian(x, mesh::tet10_gradients(point.xi)).determinant();
+    total += w.back();
   }
   for (double& share : w) share /= total;
   return w;
@@ -99,13 +107,14 @@ core::Quaternion mean_quaternion(const mesh::Field& field, int element,
   return core::mean_rotation(q, weights);
 }
 
-/// The linear function at the centroid, made a unit quaternion again; signs as the first point's.
-core::Quaternion centroid_quaternion(const mesh::Field& field, int element, int points) {
+/// The value at the centroid, made a unit quaternion again; signs as the first point's.
+core::Quaternion centroid_quaternion(const mesh::Field& field, int element,
+                                     std::span<const double> weights) {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  const double* first = &field.values[static_cast<std::size_t>(element) * points * 4];
-  for (int p = 0; p < points; ++p) {
+  const double* first = &field.values[static_cast<std::size_t>(element) * weights.size() * 4];
+  for (std::size_t p = 0; p < weights.size(); ++p) {
     const Eigen::Map<const Eigen::Vector4d> q(first + 4 * p), q0(first);
-    sum += q.dot(q0) < 0 ? Eigen::Vector4d(-q) : Eigen::Vector4d(q);
+    sum += weights[p] * (q.dot(q0) < 0 ? Eigen::Vector4d(-q) : Eigen::Vector4d(q));
   }
   if (!(sum.norm() > 0))
     throw core::InternalError(
@@ -120,9 +129,6 @@ core::Vec6 plain(const double* v) { return Eigen::Map<const core::Vec6>(v); }
 
 ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
   const int n = s.mesh.element_count(), points = s.quadrature_points;
-  if (points != 4 && points != 1)
-    throw core::InternalError(
-        fmt::format("results/element_values: no rule with {} points", points));
   const auto* orientation = field_of(s, "orientation", Location::quadrature_point, 4);
   const auto* g = field_of(s, "g", Location::quadrature_point);
   const auto* slip = field_of(s, "slip", Location::quadrature_point);
@@ -145,9 +151,8 @@ ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
     measure(x, t.volume[e], t.centroid[e]);
     const auto w = point_weights(x, points, value);
     if (orientation != nullptr)
-      t.orientation[e] = value == ElementValue::average
-                             ? mean_quaternion(*orientation, e, w)
-                             : centroid_quaternion(*orientation, e, points);
+      t.orientation[e] = value == ElementValue::average ? mean_quaternion(*orientation, e, w)
+                                                        : centroid_quaternion(*orientation, e, w);
     if (g != nullptr) t.g[e] = mean<Eigen::Dynamic>(*g, e, w).mean();
     if (slip != nullptr) t.slip[e] = mean<Eigen::Dynamic>(*slip, e, w).sum();
     if (strain != nullptr) t.equivalent_strain[e] = mean<1>(*strain, e, w)[0];

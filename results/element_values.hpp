@@ -10,7 +10,7 @@ namespace polyslip::results {
 
 enum class ElementValue {
   average,   ///< mean over the points, weighted by their share of the current (curved) volume
-  centroid,  ///< the linear function through the four points, at the centroid: their plain mean
+  centroid,  ///< of 15 points the one that lies there; else the best linear function through them
 };
 
 /// [elements] each, in the order of the mesh. A field that the snapshot lacks is NaN, but a
@@ -27,8 +27,9 @@ struct ElementTable {
 };
 
 /// Stress: the quadrature-point field "cauchy_stress", or else the element field of that name.
-/// Elements of order 1 are taken as straight ones. InternalError if a field has the wrong size or a
-/// quaternion is zero or not finite.
+/// Elements of order 1 are taken as straight ones. InternalError if a field has the wrong size, a
+/// quaternion is zero or not finite, or there is no rule of so many points (one: a value an
+/// element).
 ElementTable element_values(const mesh::Snapshot& snapshot, ElementValue value);
 
 }  // namespace polyslip::results

@@ -100,8 +100,9 @@ shear stress, else the von Mises stress of the mean, in MPa.
 One row an element, in the order of the mesh file of the state's mesh number: centroid, volume,
 orientation quaternion q0 ... q3 = w x y z, slip resistance g, accumulated slip, equivalent strain,
 stress, pressure. `--value average` (default): the element values above. `--value centroid`: the
-value at the centroid of the linear function through the four quadrature points; quaternions
-likewise, normalised afterwards. An earlier table is replaced, any other file with `--overwrite` only.
+value at the element's centroid: of fifteen quadrature points the one that lies there, else of the
+linear function that fits the points best; quaternions likewise, normalised afterwards. An earlier
+table is replaced, any other file with `--overwrite` only.
 
 )";
 

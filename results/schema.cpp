@@ -156,7 +156,9 @@ std::vector<DatasetSpec> make_schema() {
        {},
        "-",
        "file",
-       "Points an element; point i of four is the one nearest to corner i."},
+       "Points an element: 4, 8, 14 or 15. Point i of four is the one nearest to corner i; the "
+       "first "
+       "of fifteen is the centroid."},
       {"state/node/*", f64, {"nodes", "components"}, "", "node", "Fields of the computation."},
       {"state/element/*",
        f64,

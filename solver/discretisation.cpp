@@ -22,12 +22,14 @@ std::string describe(Evaluation evaluation) {
 }
 
 Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& exchange,
-                               const material::CrystalLaw& law, bool mixed,
+                               const material::CrystalLaw& law, bool mixed, const PointRule& rule,
                                const std::vector<double>& x, std::vector<double> reference_volume)
     : local_(local),
       exchange_(exchange),
       law_(law),
       mixed_(mixed),
+      rule_(rule),
+      slots_(static_cast<std::size_t>(rule.slots)),
       bulk_(law.bulk_modulus()),
       shear_(law.shear_modulus()),
       reference_volumes_(std::move(reference_volume)) {
@@ -35,19 +37,19 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
   volumes_.assign(n, 0);
   volume_gap_.assign(n, 0);
   jacobian_ratios_.assign(n, 0);
-  volume_ratio_.assign(n * element_points, 1);
-  step_ratio_.assign(n * element_points, 1);
-  f_.assign(n * 9 * element_points, 0);
-  state_.assign(n * law.layout().size() * element_points, 0);
-  stress_.assign(n * 6 * element_points, 0);
-  tangent_.assign(n * 54 * element_points, 0);
-  mean_stress_.assign(n, {});
-  status_.assign(n * element_points, material::PointStatus::converged);
+  volume_ratio_.assign(n * slots_, 1);
+  step_ratio_.assign(n * slots_, 1);
+  f_.assign(n * 9 * slots_, 0);
+  state_.assign(n * law.layout().size() * slots_, 0);
+  stress_.assign(n * 6 * slots_, 0);
+  tangent_.assign(n * 54 * slots_, 0);
+  mean_stress_.assign(n * slots_, 0);
+  status_.assign(n * slots_, material::PointStatus::converged);
   element_forces_.resize(n);
   forces_.assign(static_cast<std::size_t>(local.local_nodes) * 3, 0);
   if (mixed_) {
     for (auto* v : {&scale_, &C_, &W_, &schur_}) v->assign(n, 0);
-    for (auto* v : {&reference_, &departure_}) v->assign(n * element_points, 0);
+    for (auto* v : {&reference_, &departure_}) v->assign(n * slots_, 0);
   }
   if (!reference_volumes_.empty() && reference_volumes_.size() != n)
     throw core::InternalError("Discretisation: wrong number of reference volumes");
@@ -57,7 +59,7 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
   reference_volumes_.resize(n);
   for (std::size_t e = 0; e < n; ++e) {
     ElementGeometry geometry;
-    if (!element_geometry(positions(static_cast<int>(e), x), geometry)) failed = 1;
+    if (!element_geometry(rule_, positions(static_cast<int>(e), x), geometry)) failed = 1;
     reference_volumes_[e] = geometry.volume;
   }
   if (maximum(local.comm, failed) != 0)
@@ -73,6 +75,10 @@ ElementPositions Discretisation::positions(int element, const std::vector<double
   return out;
 }
 
+bool Discretisation::geometry_of(std::size_t element, ElementGeometry& geometry) const {
+  return element_geometry(rule_, positions(static_cast<int>(element), x_), geometry);
+}
+
 Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<double>& x,
                                     const std::vector<double>& p, double time_step, double kappa) {
   x_ = x;
@@ -83,13 +89,13 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
   if (outcome != Evaluation::fine) return outcome;
   for (std::size_t e = 0; e < local_.elements.size(); ++e) {
     if (mixed_) {
-      mean_stress_[e].fill(p[e]);
+      std::fill_n(&mean_stress_[slots_ * e], slots_, p[e]);
       add_point_volumes(e);
       volume_gap_[e] = std::log(volumes_[e] / reference_volumes_[e]) - p[e] / bulk_;
       continue;
     }
-    for (std::size_t q = 0; q < element_points; ++q)
-      mean_stress_[e][q] = bulk_ * std::log(volume_ratio_[element_points * e + q]);
+    for (std::size_t at = slots_ * e; at < slots_ * (e + 1); ++at)
+      mean_stress_[at] = bulk_ * std::log(volume_ratio_[at]);
   }
   sum_forces();
   double total = 0;
@@ -101,14 +107,14 @@ Evaluation Discretisation::evaluate(const Configuration& old, const std::vector<
 
 PointVolumeResistance Discretisation::resistance(std::size_t e,
                                                  const ElementGeometry& geometry) const {
-  return point_volume_resistance(geometry, &step_ratio_[element_points * e], kappa_);
+  return point_volume_resistance(geometry, &step_ratio_[slots_ * e], kappa_);
 }
 
 void Discretisation::add_point_volumes(std::size_t e) {
   ElementGeometry geometry;
-  element_geometry(positions(static_cast<int>(e), x_), geometry);
+  geometry_of(e, geometry);
   const auto p = resistance_mean_stress(resistance(e, geometry), geometry);
-  for (std::size_t q = 0; q < element_points; ++q) mean_stress_[e][q] += p[q];
+  for (std::size_t q = 0; q < slots_; ++q) mean_stress_[slots_ * e + q] += p[q];
 }
 
 Evaluation Discretisation::kinematics(const Configuration& old) {
@@ -116,21 +122,22 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
   const int n = local_.element_count();
 #pragma omp parallel for schedule(static) reduction(max : failed)
   for (int e = 0; e < n; ++e) {
+    const auto first = static_cast<std::size_t>(e) * slots_;
     ElementGeometry geometry;
-    double* f = &f_[static_cast<std::size_t>(e) * 9 * element_points];
-    if (!element_geometry(positions(e, x_), geometry) ||
+    double* f = &f_[9 * first];
+    if (!geometry_of(static_cast<std::size_t>(e), geometry) ||
         !relative_gradients(positions(e, old.x), geometry, f)) {
       failed = 1;
       continue;
     }
     volumes_[e] = geometry.volume;
     jacobian_ratios_[e] = geometry.min_jacobian_ratio;
-    for (std::size_t q = 0; q < element_points; ++q) {
-      const auto F = [&](int i, int j) { return f[(3 * i + j) * element_points + q]; };
+    for (int q = 0; q < rule_.slots; ++q) {
+      const auto F = [&](int i, int j) { return f[PointRule::at(9, 3 * i + j, q)]; };
       const double det = F(0, 0) * (F(1, 1) * F(2, 2) - F(1, 2) * F(2, 1)) -
                          F(0, 1) * (F(1, 0) * F(2, 2) - F(1, 2) * F(2, 0)) +
                          F(0, 2) * (F(1, 0) * F(2, 1) - F(1, 1) * F(2, 0));
-      const std::size_t at = static_cast<std::size_t>(e) * element_points + q;
+      const std::size_t at = first + static_cast<std::size_t>(q);
       step_ratio_[at] = det;
       volume_ratio_[at] = old.volume_ratio[at] * det;
     }
@@ -140,7 +147,7 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
 
 Evaluation Discretisation::update_material(const Configuration& old, double time_step) {
   material::PointBlocks blocks;
-  blocks.n_blocks = local_.element_count();
+  blocks.n_blocks = local_.element_count() * rule_.blocks;
   blocks.time_step = time_step;
   blocks.relative_gradient = f_.data();
   blocks.state_old = old.state.data();
@@ -159,10 +166,10 @@ void Discretisation::sum_forces() {
   const int n = local_.element_count();
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < n; ++e) {
+    const auto at = static_cast<std::size_t>(e) * slots_;
     ElementGeometry geometry;
-    element_geometry(positions(e, x_), geometry);
-    element_forces(geometry, &stress_[static_cast<std::size_t>(e) * 6 * element_points],
-                   mean_stress_[e], element_forces_[e]);
+    geometry_of(static_cast<std::size_t>(e), geometry);
+    element_forces(geometry, &stress_[6 * at], &mean_stress_[at], element_forces_[e]);
   }
   std::fill(forces_.begin(), forces_.end(), 0.0);
   for (int e = 0; e < n; ++e)
@@ -179,9 +186,9 @@ double Discretisation::augmentation(double modulus) const {
 
 void Discretisation::linearise_element(std::size_t e) {
   ElementGeometry geometry;
-  element_geometry(positions(static_cast<int>(e), x_), geometry);
+  geometry_of(e, geometry);
   const double mu =
-      std::max(element_shear_modulus(geometry, &tangent_[e * 54 * element_points]), 1e-6 * shear_);
+      std::max(element_shear_modulus(geometry, &tangent_[54 * e * slots_]), 1e-6 * shear_);
   const double V = geometry.volume, w = augmentation(mu) / V, compliance = V / bulk_;
   ElementForces b;
   element_volume_gradient(geometry, b);
@@ -194,9 +201,9 @@ void Discretisation::linearise_element(std::size_t e) {
   W_[e] = w / d2;
   schur_[e] = d2 * (compliance + (1 - w * compliance) / (mu / V + w));
   const PointVolumeResistance r = resistance(e, geometry);
-  for (std::size_t q = 0; q < element_points; ++q) {
-    reference_[element_points * e + q] = r.reference[q];
-    departure_[element_points * e + q] = r.s[q];
+  for (std::size_t q = 0; q < slots_; ++q) {
+    reference_[slots_ * e + q] = r.reference[q];
+    departure_[slots_ * e + q] = r.s[q];
   }
 }
 
@@ -205,7 +212,7 @@ LinearBlocks Discretisation::linearise() {
   blocks.x = x_.data();
   blocks.stress = stress_.data();
   blocks.tangent = tangent_.data();
-  blocks.mean_stress = mean_stress_.data()->data();
+  blocks.mean_stress = mean_stress_.data();
   if (!mixed_) {
     blocks.bulk = bulk_;
     return blocks;
@@ -233,9 +240,9 @@ void Discretisation::apply_tangent(const std::vector<int>& elements, const std::
     ElementGeometry geometry;
     ElementMatrix matrix;
     ElementForces b;
-    element_geometry(positions(element, x_), geometry);
-    element_tangent(geometry, &stress_[e * 6 * element_points], &tangent_[e * 54 * element_points],
-                    mean_stress_[e], mixed_ ? 0 : bulk_, matrix);
+    geometry_of(e, geometry);
+    element_tangent(geometry, &stress_[6 * e * slots_], &tangent_[54 * e * slots_],
+                    &mean_stress_[e * slots_], mixed_ ? 0 : bulk_, matrix);
     if (mixed_) add_resistance_tangent(resistance(e, geometry), geometry, matrix);
     element_volume_gradient(geometry, b);
     const auto& nodes = local_.elements[e];
@@ -262,26 +269,28 @@ void Discretisation::accept(const std::vector<double>& x, const std::vector<doub
 
 std::vector<double> Discretisation::cauchy_stress() const {
   const double half_sqrt2 = std::sqrt(0.5);
-  std::vector<double> out(local_.elements.size() * element_points * 6);
+  std::vector<double> out;
+  out.reserve(local_.elements.size() * static_cast<std::size_t>(rule_.points) * 6);
   for (std::size_t e = 0; e < local_.elements.size(); ++e)
-    for (std::size_t q = 0; q < element_points; ++q)
-      for (std::size_t c = 0; c < 6; ++c) {
-        const double s = stress_[(6 * e + c) * element_points + q];
-        out[(element_points * e + q) * 6 + c] = c < 3 ? s + mean_stress_[e][q] : half_sqrt2 * s;
+    for (int q = 0; q < rule_.points; ++q)
+      for (int c = 0; c < 6; ++c) {
+        const double s = stress_[6 * slots_ * e + static_cast<std::size_t>(PointRule::at(6, c, q))];
+        out.push_back(c < 3 ? s + mean_stress_[slots_ * e + static_cast<std::size_t>(q)]
+                            : half_sqrt2 * s);
       }
   return out;
 }
 
 std::vector<double> Discretisation::element_stress() const {
   const auto points = cauchy_stress();
+  const auto count = static_cast<std::size_t>(rule_.points);
   std::vector<double> out(local_.elements.size() * 6, 0);
   for (std::size_t e = 0; e < local_.elements.size(); ++e) {
     ElementGeometry geometry;
-    element_geometry(positions(static_cast<int>(e), x_), geometry);
-    for (std::size_t q = 0; q < element_points; ++q)
+    geometry_of(e, geometry);
+    for (std::size_t q = 0; q < count; ++q)
       for (std::size_t c = 0; c < 6; ++c)
-        out[6 * e + c] +=
-            geometry.weights[q] / geometry.volume * points[(element_points * e + q) * 6 + c];
+        out[6 * e + c] += geometry.weights[q] / geometry.volume * points[(count * e + q) * 6 + c];
   }
   return out;
 }

@@ -13,12 +13,13 @@
 
 namespace polyslip::solver {
 
-/// The body at one instant, as far as this rank knows it.
+/// The body at one instant, as far as this rank knows it. The points of an element stand in blocks,
+/// the last one filled with repetitions (solver/reference_element.hpp).
 struct Configuration {
   std::vector<double> x;             ///< [local_nodes][3] positions
   std::vector<double> p;             ///< [elements] mean stress [MPa], mixed element
-  std::vector<double> volume_ratio;  ///< [elements][4] det F of the point since V0
-  std::vector<double> state;         ///< [elements][law size][4] of the material
+  std::vector<double> volume_ratio;  ///< [elements][slots] det F of the point since V0
+  std::vector<double> state;         ///< [elements][blocks][law size][4] of the material
 };
 
 /// Why a configuration cannot be evaluated.
@@ -33,8 +34,8 @@ class Discretisation {
  public:
   /// Collective. reference_volume: [elements] V0, empty: the volumes of x.
   Discretisation(const LocalMesh& local, const NodeExchange& exchange,
-                 const material::CrystalLaw& law, bool mixed, const std::vector<double>& x,
-                 std::vector<double> reference_volume);
+                 const material::CrystalLaw& law, bool mixed, const PointRule& rule,
+                 const std::vector<double>& x, std::vector<double> reference_volume);
 
   /// Stresses, new state, forces and volume residuals at positions x and mean stresses p, reached
   /// from `old` in `time_step` [s]; kappa: modulus of solver/point_volumes.hpp [MPa], mixed
@@ -69,7 +70,7 @@ class Discretisation {
   const std::vector<double>& volume_gap() const { return volume_gap_; }
   const std::vector<double>& volumes() const { return volumes_; }
   const std::vector<double>& reference_volumes() const { return reference_volumes_; }
-  /// [elements][4][6] Cauchy stress xx yy zz yz zx xy, plain components [MPa]
+  /// [elements][points][6] Cauchy stress xx yy zz yz zx xy, plain components [MPa]
   std::vector<double> cauchy_stress() const;
   /// [elements][6] its mean over the element, by the same quadrature
   std::vector<double> element_stress() const;
@@ -79,6 +80,7 @@ class Discretisation {
   double min_jacobian_ratio() const;
 
   bool mixed() const { return mixed_; }
+  const PointRule& rule() const { return rule_; }
   const LocalMesh& local() const { return local_; }
   const NodeExchange& exchange() const { return exchange_; }
   const material::CrystalLaw& law() const { return law_; }
@@ -88,18 +90,21 @@ class Discretisation {
   const NodeExchange& exchange_;
   const material::CrystalLaw& law_;
   bool mixed_;
+  const PointRule& rule_;
+  std::size_t slots_;  // of an element, rule_.slots
   double bulk_, shear_;
   std::vector<double> scale_, C_, W_, schur_;  // [elements] of the linear blocks
-  std::vector<double> reference_, departure_;  // [elements][4] of the points' volume resistance
+  std::vector<double> reference_, departure_;  // [elements][slots] of the points' volume resistance
   std::vector<double> reference_volumes_, volumes_, volume_gap_, jacobian_ratios_, volume_ratio_;
-  std::vector<double> step_ratio_;  // [elements][4] det f of the point over the step
+  std::vector<double> step_ratio_;  // [elements][slots] det f of the point over the step
   double kappa_ = 0;
   std::vector<double> x_, f_, state_, stress_, tangent_, forces_;
-  std::vector<std::array<double, element_points>> mean_stress_;  // [elements] of the points
+  std::vector<double> mean_stress_;  // [elements][slots]
   std::vector<material::PointStatus> status_;
   std::vector<ElementForces> element_forces_;
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
+  bool geometry_of(std::size_t element, ElementGeometry& geometry) const;
   PointVolumeResistance resistance(std::size_t element, const ElementGeometry& geometry) const;
   /// Adds the resistance's mean stresses to those of the element's points.
   void add_point_volumes(std::size_t element);

@@ -6,34 +6,9 @@
 #include <limits>
 
 #include "core/tensor.hpp"
-#include "mesh/quadrature.hpp"
-#include "mesh/shape_functions.hpp"
 
 namespace polyslip::solver {
 namespace {
-
-/// Shape function gradients in the unit tetrahedron, [point][direction][node], and the weights.
-struct ReferenceElement {
-  std::array<std::array<std::array<double, element_nodes>, 3>, element_points> gradients;
-  std::array<double, element_points> weights;
-};
-
-ReferenceElement make_reference() {
-  ReferenceElement r;
-  const auto rule = mesh::tet_quadrature_4();
-  for (int q = 0; q < element_points; ++q) {
-    const auto g = mesh::tet10_gradients(rule[q].xi);
-    r.weights[q] = rule[q].weight;
-    for (int a = 0; a < element_nodes; ++a)
-      for (int j = 0; j < 3; ++j) r.gradients[q][j][a] = g[a][j];
-  }
-  return r;
-}
-
-const ReferenceElement& reference() {
-  static const ReferenceElement r = make_reference();
-  return r;
-}
 
 /// a^-1, given det a.
 void invert(const double a[3][3], double det, double inverse[3][3]) {
@@ -59,7 +34,7 @@ double plain(int i, int j) { return i == j ? 1.0 : half_sqrt2; }
 void cauchy(const double* stress, double p, int q, double sigma[3][3]) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      sigma[i][j] = stress[mandel[i][j] * element_points + q] * plain(i, j) + (i == j ? p : 0);
+      sigma[i][j] = stress[PointRule::at(6, mandel[i][j], q)] * plain(i, j) + (i == j ? p : 0);
 }
 
 /// M_ijkl of element_tangent at point q.
@@ -71,7 +46,7 @@ void moduli(const double* stress, const double* tangent, double p, double bulk, 
     for (int j = 0; j < 3; ++j)
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) {
-          double m = tangent[(9 * mandel[i][j] + 3 * k + l) * element_points + q] * plain(i, j);
+          double m = tangent[PointRule::at(54, 9 * mandel[i][j] + 3 * k + l, q)] * plain(i, j);
           if (k == l) m += sigma[i][j];
           if (j == k) m -= sigma[i][l];
           if (i == j && k == l) m += bulk;
@@ -103,35 +78,36 @@ const DeviatorBasis& deviator_basis() {
 
 }  // namespace
 
-bool element_geometry(const ElementPositions& x, ElementGeometry& geometry) {
-  const ReferenceElement& ref = reference();
+bool element_geometry(const PointRule& rule, const ElementPositions& x, ElementGeometry& geometry) {
+  geometry.points = rule.points;
   geometry.volume = 0;
   double smallest = std::numeric_limits<double>::max(), mean = 0;
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < rule.points; ++q) {
+    const auto& reference = rule.point_gradients[q];
     double jacobian[3][3] = {};  // dx_i/dxi_j
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        for (int a = 0; a < element_nodes; ++a) jacobian[i][j] += x[a][i] * ref.gradients[q][j][a];
+        for (int a = 0; a < element_nodes; ++a) jacobian[i][j] += x[a][i] * reference[j][a];
     const double det = determinant(jacobian);
     if (!(det > 0)) return false;
     double inverse[3][3];  // dxi_j/dx_i at [j][i]
     invert(jacobian, det, inverse);
     for (int i = 0; i < 3; ++i)
       for (int a = 0; a < element_nodes; ++a)
-        geometry.gradients[q][i][a] = ref.gradients[q][0][a] * inverse[0][i] +
-                                      ref.gradients[q][1][a] * inverse[1][i] +
-                                      ref.gradients[q][2][a] * inverse[2][i];
-    geometry.weights[q] = ref.weights[q] * det;
+        geometry.gradients[q][i][a] = reference[0][a] * inverse[0][i] +
+                                      reference[1][a] * inverse[1][i] +
+                                      reference[2][a] * inverse[2][i];
+    geometry.weights[q] = rule.weights[q / material::lanes][q % material::lanes] * det;
     geometry.volume += geometry.weights[q];
     smallest = std::min(smallest, det);
-    mean += det / element_points;
+    mean += det / rule.points;
   }
   geometry.min_jacobian_ratio = smallest / mean;
   return true;
 }
 
 bool relative_gradients(const ElementPositions& x_old, const ElementGeometry& geometry, double* f) {
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     double inverse[3][3] = {};  // dx_{n,i}/dx_{n+1,j} = f^-1
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -142,15 +118,18 @@ bool relative_gradients(const ElementPositions& x_old, const ElementGeometry& ge
     double forward[3][3];
     invert(inverse, det, forward);
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) f[(3 * i + j) * element_points + q] = forward[i][j];
+      for (int j = 0; j < 3; ++j) f[PointRule::at(9, 3 * i + j, q)] = forward[i][j];
   }
+  const int last = geometry.points - 1;
+  for (int q = geometry.points; q % material::lanes != 0; ++q)
+    for (int k = 0; k < 9; ++k) f[PointRule::at(9, k, q)] = f[PointRule::at(9, k, last)];
   return true;
 }
 
 void element_forces(const ElementGeometry& geometry, const double* stress,
-                    const std::array<double, element_points>& mean_stress, ElementForces& forces) {
+                    const double* mean_stress, ElementForces& forces) {
   for (auto& r : forces) r = {0, 0, 0};
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     double sigma[3][3];
     cauchy(stress, mean_stress[q], q, sigma);
     for (int a = 0; a < element_nodes; ++a)
@@ -163,18 +142,17 @@ void element_forces(const ElementGeometry& geometry, const double* stress,
 
 void element_volume_gradient(const ElementGeometry& geometry, ElementForces& gradient) {
   for (auto& b : gradient) b = {0, 0, 0};
-  for (int q = 0; q < element_points; ++q)
+  for (int q = 0; q < geometry.points; ++q)
     for (int a = 0; a < element_nodes; ++a)
       for (int i = 0; i < 3; ++i)
         gradient[a][i] += geometry.weights[q] * geometry.gradients[q][i][a];
 }
 
 void element_tangent(const ElementGeometry& geometry, const double* stress, const double* tangent,
-                     const std::array<double, element_points>& mean_stress, double bulk,
-                     ElementMatrix& matrix) {
+                     const double* mean_stress, double bulk, ElementMatrix& matrix) {
   double* out = &matrix[0][0][0][0];
   std::fill(out, out + 900, 0.0);
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     double M[3][3][3][3];
     moduli(stress, tangent, mean_stress[q], bulk, q, M);
     const auto& g = geometry.gradients[q];
@@ -198,10 +176,10 @@ void element_tangent(const ElementGeometry& geometry, const double* stress, cons
 double element_shear_modulus(const ElementGeometry& geometry, const double* tangent) {
   const DeviatorBasis& basis = deviator_basis();
   double mu = 0;
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     Eigen::Matrix<double, 6, 9> D;
     for (int i = 0; i < 6; ++i)
-      for (int kl = 0; kl < 9; ++kl) D(i, kl) = tangent[(9 * i + kl) * element_points + q];
+      for (int kl = 0; kl < 9; ++kl) D(i, kl) = tangent[PointRule::at(54, 9 * i + kl, q)];
     const Eigen::Matrix<double, 5, 5> modes = basis.mandel.transpose() * D * basis.plain;
     mu += geometry.weights[q] / geometry.volume *
           std::pow(std::max(modes.determinant(), 0.0), 0.2) / 2;

@@ -17,23 +17,6 @@ namespace {
 constexpr int dofs_of_element = 3 * element_nodes;
 constexpr float inv_sqrt2 = 0.70710678118654752f, inv_sqrt6 = 0.40824829046386302f;
 
-/// PointTable's gradients, [point][direction][node].
-struct SingleTable {
-  float gradients[element_points][3][element_nodes];
-};
-
-const SingleTable& single_table() {
-  static const SingleTable table = [] {
-    SingleTable t{};
-    for (int q = 0; q < element_points; ++q)
-      for (int L = 0; L < 3; ++L)
-        for (int a = 0; a < element_nodes; ++a)
-          t.gradients[q][L][a] = static_cast<float>(point_table().gradients[L][a][q]);
-    return t;
-  }();
-  return table;
-}
-
 constexpr int upper(int i, int j) {  // of a 5 x 5 matrix, row by row
   return i <= j ? 5 * i - i * (i - 1) / 2 + (j - i) : upper(j, i);
 }
@@ -75,14 +58,14 @@ inline void space_gradient(const PointLanes& p, const float (&reference)[3], Lan
            reference[2] * p.jacobian(2, l);
 }
 
-/// f_ai = sum_L N_a,L t_iL at one point, t_iL = T_ij dxi_L/dx_j.
-inline void add_forces(const PointLanes& p, int q, const Lanes T[3][3], Lanes* f) {
+/// f_ai = sum_L N_a,L t_iL at one point, t_iL = T_ij dxi_L/dx_j. N: [direction][node] dN_a / dxi_L
+inline void add_forces(const PointLanes& p, const std::array<std::array<float, 10>, 3>& N,
+                       const Lanes T[3][3], Lanes* f) {
   Lanes t[3][3];
   for (int L = 0; L < 3; ++L)
     for (int i = 0; i < 3; ++i)
       t[i][L] =
           T[i][0] * p.jacobian(L, 0) + T[i][1] * p.jacobian(L, 1) + T[i][2] * p.jacobian(L, 2);
-  const auto& N = single_table().gradients[q];
   for (int a = 0; a < element_nodes; ++a)
     for (int i = 0; i < 3; ++i)
       f[3 * a + i] += N[0][a] * t[i][0] + N[1][a] * t[i][1] + N[2][a] * t[i][2];
@@ -91,7 +74,13 @@ inline void add_forces(const PointLanes& p, int q, const Lanes T[3][3], Lanes* f
 }  // namespace
 
 FineLevel::FineLevel(const LinearLayout& layout)
-    : layout_(layout), threaded_(omp_get_max_threads() > 1) {
+    : layout_(layout), element_points_(layout.points), threaded_(omp_get_max_threads() > 1) {
+  const PointRule& rule = point_rule(element_points_);
+  gradients_.resize(static_cast<std::size_t>(element_points_));
+  for (int q = 0; q < element_points_; ++q)
+    for (int L = 0; L < 3; ++L)
+      for (int a = 0; a < element_nodes; ++a)
+        gradients_[q][L][a] = static_cast<float>(rule.point_gradients[q][L][a]);
   const LocalMesh& local = *layout.local;
   const int n = local.element_count();
   groups_ = (n + group_lanes - 1) / group_lanes;
@@ -101,13 +90,18 @@ FineLevel::FineLevel(const LinearLayout& layout)
     for (std::size_t a = 0; a < 10; ++a)
       nodes_[(k / group_lanes * 10 + a) * group_lanes + k % group_lanes] =
           3 * local.elements[std::min(k, static_cast<std::size_t>(n - 1))][a];
-  points_.assign(lanes * element_points * point_values, 0.0f);
+  points_.assign(lanes * static_cast<std::size_t>(element_points_) * point_values, 0.0f);
   for (auto* v : {&alpha_, &beta_, &inverse_volume_, &scale_}) v->assign(lanes, 0.0f);
   inverse_diagonal_.resize(9 * static_cast<std::size_t>(local.owned_nodes));
   y_.resize(local_dofs());
   if (!threaded_) return;
   sum_ = std::make_unique<NodeSum>(local);
   forces_.resize(dofs_of_element * local.elements.size());
+}
+
+const float* FineLevel::point(int group, int q) const {
+  return &points_[static_cast<std::size_t>(group * element_points_ + q) * point_values *
+                  group_lanes];
 }
 
 int FineLevel::lanes_of(int group) const {
@@ -125,10 +119,25 @@ void FineLevel::set(const KrylovOperator& fine) {
 void FineLevel::set_element(const KrylovOperator& fine, int element) {
   const auto e = static_cast<std::size_t>(element);
   const LinearBlocks& blocks = fine.blocks();
+  const auto n_blocks = static_cast<std::size_t>(fine.rule().blocks);
+  double V = 0;
+  for (std::size_t b = 0; b < n_blocks; ++b) {
+    const double* geometry = &fine.geometry()[40 * (n_blocks * e + b)];
+    set_points(element, static_cast<int>(b), geometry, blocks.tangent + 216 * (n_blocks * e + b));
+    V += sum_points(load_points(geometry));
+  }
+  const double D = layout_.mixed ? blocks.scale[e] : 0;
+  const double augmentation = layout_.mixed ? blocks.W[e] * D * D * V : 0;
+  alpha_[e] = static_cast<float>(blocks.kappa + blocks.bulk);
+  beta_[e] = static_cast<float>(augmentation - blocks.kappa);
+  inverse_volume_[e] = static_cast<float>(1 / V);
+  scale_[e] = static_cast<float>(D);
+}
+
+void FineLevel::set_points(int element, int block, const double* geometry, const double* tangent) {
+  const auto e = static_cast<std::size_t>(element);
   const std::size_t group = e / group_lanes, lane = e % group_lanes;
-  const double* geometry = &fine.geometry()[40 * e];
-  const double* tangent = blocks.tangent + 216 * e;
-  // M[m][i]: mode m of Mandel component i; h[m][kl]: gradient of mode m.
+  // M[m][i]: mode m of Mandel component i.
   static const auto basis = [] {
     std::array<std::array<double, 6>, 5> M{};
     for (int m = 0; m < 5; ++m)
@@ -156,22 +165,21 @@ void FineLevel::set_element(const KrylovOperator& fine, int element) {
     return sum;
   };
   const Points w = load_points(geometry);
+  const int first = material::lanes * block,
+            count = std::min(material::lanes, element_points_ - first);
   const auto put = [&](int value, Points v) {
-    for (std::size_t q = 0; q < element_points; ++q)
-      points_[((group * element_points + q) * point_values + value) * group_lanes + lane] =
-          static_cast<float>(v[q]);
+    for (int q = 0; q < count; ++q)
+      points_[((group * static_cast<std::size_t>(element_points_) +
+                static_cast<std::size_t>(first + q)) *
+                   point_values +
+               value) *
+                  group_lanes +
+              lane] = static_cast<float>(v[q]);
   };
   for (int i = 0; i < 10; ++i) put(i, load_points(geometry + 4 * i));
   for (int m = 0; m < 5; ++m)
     for (int n = m; n < 5; ++n)
       put(10 + upper(m, n), w * half * (m == n ? 2 * entry(m, m) : entry(m, n) + entry(n, m)));
-  const double V = sum_points(w);
-  const double D = layout_.mixed ? blocks.scale[e] : 0;
-  const double augmentation = layout_.mixed ? blocks.W[e] * D * D * V : 0;
-  alpha_[e] = static_cast<float>(blocks.kappa + blocks.bulk);
-  beta_[e] = static_cast<float>(augmentation - blocks.kappa);
-  inverse_volume_[e] = static_cast<float>(1 / V);
-  scale_[e] = static_cast<float>(D);
 }
 
 void FineLevel::diagonal_of(int group, float* out) const {
@@ -180,11 +188,9 @@ void FineLevel::diagonal_of(int group, float* out) const {
   const Lanes inverse_volume = load_lanes(&inverse_volume_[first]);
   for (int a = 0; a < element_nodes; ++a) {
     Lanes K[3][3] = {}, mean[3] = {};
-    for (int q = 0; q < element_points; ++q) {
-      const PointLanes p{
-          &points_[(first * element_points + static_cast<std::size_t>(q) * group_lanes) *
-                   point_values]};
-      const auto& N = single_table().gradients[q];
+    for (int q = 0; q < element_points_; ++q) {
+      const PointLanes p{point(group, q)};
+      const auto& N = gradients_[q];
       Lanes g[3], E[5][3], S[5][3];
       space_gradient(p, {N[0][a], N[1][a], N[2][a]}, g);
       node_modes(g, E);
@@ -239,10 +245,8 @@ void FineLevel::vertex_group(int group, VertexBlock* out) const {
   const Lanes alpha = load_lanes(&alpha_[first]), beta = load_lanes(&beta_[first]);
   const Lanes inverse_volume = load_lanes(&inverse_volume_[first]);
   Lanes K[4][3][4][3] = {}, mean[4][3] = {};
-  for (int q = 0; q < element_points; ++q) {
-    const PointLanes p{
-        &points_[(first * element_points + static_cast<std::size_t>(q) * group_lanes) *
-                 point_values]};
+  for (int q = 0; q < element_points_; ++q) {
+    const PointLanes p{point(group, q)};
     const Lanes w = p.volume();
     Lanes g[4][3], E[4][5][3];
     for (int a = 0; a < 4; ++a) {
@@ -284,11 +288,10 @@ void FineLevel::forces_of(int group, const float* x, float* f) const {
       const float* at = x + nodes[group_lanes * a + lane];
       for (int i = 0; i < 3; ++i) u[3 * a + i][lane] = at[i];
     }
-  Lanes stress[element_points][5], divergence[element_points], mean{};
-  const float* points = &points_[first * element_points * point_values];
-  for (int q = 0; q < element_points; ++q) {
-    const PointLanes p{points + static_cast<std::ptrdiff_t>(q) * point_values * group_lanes};
-    const auto& N = single_table().gradients[q];
+  Lanes stress[max_element_points][5], divergence[max_element_points], mean{};
+  for (int q = 0; q < element_points_; ++q) {
+    const PointLanes p{point(group, q)};
+    const auto& N = gradients_[q];
     Lanes r[3][3] = {}, h[3][3];
     for (int b = 0; b < element_nodes; ++b)
       for (int k = 0; k < 3; ++k)
@@ -310,14 +313,14 @@ void FineLevel::forces_of(int group, const float* x, float* f) const {
   }
   const Lanes alpha = load_lanes(&alpha_[first]);
   mean *= load_lanes(&beta_[first]) * load_lanes(&inverse_volume_[first]);
-  for (int q = 0; q < element_points; ++q) {
-    const PointLanes p{points + static_cast<std::ptrdiff_t>(q) * point_values * group_lanes};
+  for (int q = 0; q < element_points_; ++q) {
+    const PointLanes p{point(group, q)};
     const Lanes* s = stress[q];
     const Lanes c = p.volume() * (alpha * divergence[q] + mean);
     const Lanes a = inv_sqrt2 * s[0], b = inv_sqrt6 * s[1];
     const Lanes yz = inv_sqrt2 * s[2], zx = inv_sqrt2 * s[3], xy = inv_sqrt2 * s[4];
     const Lanes T[3][3] = {{a - b + c, xy, zx}, {xy, c - a - b, yz}, {zx, yz, 2 * b + c}};
-    add_forces(p, q, T, forces);
+    add_forces(p, gradients_[q], T, forces);
   }
   for (int k = 0; k < dofs_of_element; ++k) store_lanes(f + group_lanes * k, forces[k]);
 }
@@ -327,13 +330,11 @@ void FineLevel::volume_forces_of(int group, const float* c, float* f) const {
   Lanes push{}, forces[dofs_of_element] = {};
   for (int lane = 0; lane < lanes_of(group); ++lane)
     push[lane] = c[first + lane] * scale_[first + lane];
-  for (int q = 0; q < element_points; ++q) {
-    const PointLanes p{
-        &points_[(first * element_points + static_cast<std::size_t>(q) * group_lanes) *
-                 point_values]};
+  for (int q = 0; q < element_points_; ++q) {
+    const PointLanes p{point(group, q)};
     const Lanes t = push * p.volume(), zero{};
     const Lanes T[3][3] = {{t, zero, zero}, {zero, t, zero}, {zero, zero, t}};
-    add_forces(p, q, T, forces);
+    add_forces(p, gradients_[q], T, forces);
   }
   for (int k = 0; k < dofs_of_element; ++k) store_lanes(f + group_lanes * k, forces[k]);
 }

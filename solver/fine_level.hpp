@@ -51,7 +51,12 @@ class FineLevel {
   static constexpr int point_values = 25;
   using Coefficients = std::array<std::vector<float>, 4>;
 
+  /// [point][direction][node] dN_a / dxi_L
+  using PointGradients = std::array<std::array<float, 10>, 3>;
+
   LinearLayout layout_;
+  int element_points_;
+  std::vector<PointGradients> gradients_;
   bool threaded_;
   int groups_;
   std::vector<int> nodes_;  // [groups][10][lane] 3 x local node; a filling element: the last one
@@ -63,7 +68,11 @@ class FineLevel {
   std::vector<float> forces_;     // [elements][30] with threads
 
   int lanes_of(int group) const;
+  /// Coefficients of point q of a group's elements, [25][lane].
+  const float* point(int group, int q) const;
   void set_element(const KrylovOperator& fine, int element);
+  /// Of a block of the element's points: geometry [10][4], tangent [54][4].
+  void set_points(int element, int block, const double* geometry, const double* tangent);
   void set_diagonal();
   void diagonal_of(int group, float* out) const;
   void vertex_group(int group, VertexBlock* out) const;

@@ -26,12 +26,14 @@ class KrylovOperator {
   /// yu += B^T c on owned nodes, Dirichlet dofs excepted. c: [elements]. Collective.
   void add_volume_forces(const double* c, double* yu);
 
-  /// [elements][10][4]: volume w of the point, then d xi_L / dx_l at 1 + 3 L + l.
+  const PointRule& rule() const { return rule_; }
+  /// [elements][blocks][10][4]: volume w of the point, then d xi_L / dx_l at 1 + 3 L + l.
   const std::vector<double>& geometry() const { return geometry_; }
   const LinearBlocks& blocks() const { return blocks_; }
 
  private:
   LinearLayout layout_;
+  const PointRule& rule_;
   LinearBlocks blocks_;
   bool threaded_;
   std::vector<double> geometry_;
@@ -42,7 +44,14 @@ class KrylovOperator {
   /// Calls `forces(element, f[30])` for each element and sums them into y_, ghosts included.
   template <class Forces>
   void sum_elements(const Forces& forces);
+  /// `blocks`: of points, rule_.blocks, known when compiled.
+  template <int blocks>
   void element(int e, const double* p, double* yp, double* f) const;
+  template <int blocks>
+  void volume_forces(int e, const double* c, double* f) const;
+  /// Calls call(std::integral_constant<int, rule_.blocks>).
+  template <class Call>
+  void with_blocks(const Call& call) const;
 };
 
 }  // namespace polyslip::solver

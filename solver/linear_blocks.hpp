@@ -14,6 +14,7 @@ struct LinearLayout {
   const LocalMesh* local = nullptr;
   const NodeExchange* exchange = nullptr;
   bool mixed = true;                      ///< else the displacement element, without pressures
+  int points = 4;                         ///< of an element: 4, 8, 14 or 15
   std::vector<double> coordinates;        ///< [owned_nodes][3], for the rigid-body modes
   std::vector<std::uint8_t> constrained;  ///< [local_nodes][3] Dirichlet dofs
 
@@ -21,8 +22,9 @@ struct LinearLayout {
   std::size_t pressures() const { return mixed ? local->elements.size() : 0; }
 };
 
-/// The blocks of the saddle-point system, on the element level (solver/element.hpp). Points are
-/// innermost. The arrays must live as long as the blocks are used.
+/// The blocks of the saddle-point system, on the element level (solver/element.hpp). The points of
+/// an element stand in blocks of four (solver/reference_element.hpp). The arrays must live as long
+/// as the blocks are used.
 ///   A: sum over the elements of element_tangent + add_resistance_tangent
 ///   B: a row D_e b_e an element, b_e = dV_e/du;  C, W, S: one number an element
 /// Rows and columns of Dirichlet dofs are left out by the solver. The augmentation W D^2 is one
@@ -32,13 +34,13 @@ struct LinearLayout {
 /// volume residuals to forces, so that a 2-norm sees both.
 struct LinearBlocks {
   const double* x = nullptr;            ///< [local_nodes][3] positions
-  const double* stress = nullptr;       ///< [elements][6][4] deviatoric, Mandel
-  const double* tangent = nullptr;      ///< [elements][54][4] of the law
-  const double* mean_stress = nullptr;  ///< [elements][4]
+  const double* stress = nullptr;       ///< [elements][blocks][6][4] deviatoric, Mandel
+  const double* tangent = nullptr;      ///< [elements][blocks][54][4] of the law
+  const double* mean_stress = nullptr;  ///< [elements][blocks][4]
   double bulk = 0;                      ///< K of the displacement element, 0 of the mixed one
   double kappa = 0;                     ///< of solver/point_volumes.hpp
-  const double* reference = nullptr;    ///< [elements][4] W_q likewise; read if kappa > 0
-  const double* departure = nullptr;    ///< [elements][4] s_q likewise
+  const double* reference = nullptr;    ///< likewise, W_q; read if kappa > 0
+  const double* departure = nullptr;    ///< likewise, s_q
   // Of the mixed element, [elements]; null for the displacement element.
   const double* scale = nullptr;  ///< D
   const double* C = nullptr;      ///< D^2 V / K

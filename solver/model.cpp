@@ -54,6 +54,7 @@ struct Model::Impl {
   Boundary boundary;
   std::function<void(const std::string&)> log;
   bool root, mixed;
+  const PointRule& rule;
   mesh::Snapshot base;     // rank 0: mesh and what else came with the snapshot
   std::vector<int> ranks;  // rank 0: of each element
   Distribution distribution;
@@ -78,6 +79,7 @@ struct Model::Impl {
         log(std::move(log_line)),
         root(rank_of(c) == 0),
         mixed(options.element == "mixed"),
+        rule(point_rule(options.quadrature_points)),
         base(checked(snapshot)),
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
@@ -93,7 +95,7 @@ struct Model::Impl {
     read_configuration();
     restore_history();
     discretisation =
-        std::make_unique<Discretisation>(distribution.local(), exchange, law, mixed, now.x,
+        std::make_unique<Discretisation>(distribution.local(), exchange, law, mixed, rule, now.x,
                                          read(field::reference_volume, Location::element, 1));
     if (volumes.empty()) volumes = discretisation->reference_volumes();
     newton = std::make_unique<NewtonSolver>(*discretisation, boundary, options, now.x);
@@ -101,7 +103,7 @@ struct Model::Impl {
 
   /// The snapshot on rank 0, after a check that every rank hears of.
   mesh::Snapshot checked(const mesh::Snapshot& snapshot) const {
-    on_root(comm, [&] { check_fields(snapshot, law); });
+    on_root(comm, [&] { check_fields(snapshot, law, rule.points); });
     return root ? snapshot : mesh::Snapshot{};
   }
 
@@ -109,7 +111,7 @@ struct Model::Impl {
   std::vector<double> read(const std::string& name, Location location, int components) const {
     const auto values = root ? values_of(base, name, location) : std::vector<double>{};
     if (!broadcast(comm, !values.empty())) return {};
-    const int points = location == Location::quadrature_point ? element_points : 1;
+    const int points = location == Location::quadrature_point ? rule.points : 1;
     return location == Location::node ? distribution.scatter_nodes(values, components)
                                       : distribution.scatter_elements(values, components * points);
   }
@@ -117,10 +119,10 @@ struct Model::Impl {
   void read_configuration() {
     const auto& local = distribution.local();
     const std::size_t elements = local.elements.size();
+    const std::size_t points = elements * static_cast<std::size_t>(rule.points);
     now.x = distribution.scatter_nodes(root ? flat(base.mesh.nodes) : std::vector<double>{}, 3);
-    now.state =
-        distribution.scatter_elements(root ? state_blocks(base, law) : std::vector<double>{},
-                                      law.layout().size() * element_points);
+    now.state = distribution.scatter_elements(
+        root ? state_blocks(base, law) : std::vector<double>{}, law.layout().size() * rule.slots);
     // Without the volumes of zero stress there is no pressure: a fresh or remeshed body.
     const bool stressed =
         broadcast(comm, base.find(field::reference_volume, Location::element) != nullptr);
@@ -133,10 +135,9 @@ struct Model::Impl {
     now.p = take(field::pressure, Location::element, 1, elements, 0);
     for (double& p : now.p) p = -p;
     now.volume_ratio =
-        take(field::volume_ratio, Location::quadrature_point, 1, elements * element_points, 1);
+        fill_slots(take(field::volume_ratio, Location::quadrature_point, 1, points, 1), rule);
     element_stress = take(field::cauchy_stress, Location::element, 6, elements * 6, 0);
-    point_stress =
-        take(field::cauchy_stress, Location::quadrature_point, 6, elements * element_points * 6, 0);
+    point_stress = take(field::cauchy_stress, Location::quadrature_point, 6, points * 6, 0);
     volumes = stressed ? read(field::volume, Location::element, 1) : std::vector<double>{};
     displacement = read(field::displacement, Location::node, 3);
     if (displacement.empty()) displacement.assign(now.x.size(), 0);
@@ -358,7 +359,7 @@ struct Model::Impl {
       return distribution.gather_elements(v, components);
     };
     const auto x = nodes(now.x);
-    const auto state = elements(now.state, law.layout().size() * element_points);
+    const auto state = elements(now.state, law.layout().size() * rule.slots);
     if (root) {
       for (std::size_t n = 0; n < out.mesh.nodes.size(); ++n)
         out.mesh.nodes[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
@@ -375,11 +376,11 @@ struct Model::Impl {
     add(out, field::reference_volume, Location::element, 1, "L^3", Transport::not_carried,
         "volume at zero pressure", elements(discretisation->reference_volumes(), 1));
     add(out, field::volume, Location::element, 1, "L^3", Transport::not_carried,
-        "volume, four-point quadrature", elements(volumes, 1));
+        "volume, by the points' quadrature", elements(volumes, 1));
     add(out, field::cauchy_stress, Location::element, 6, "MPa", Transport::reset_to_zero,
         "mean Cauchy stress: xx yy zz yz zx xy", elements(element_stress, 6));
     add(out, field::cauchy_stress, Location::quadrature_point, 6, "MPa", Transport::reset_to_zero,
-        "Cauchy stress: xx yy zz yz zx xy", elements(point_stress, 6 * element_points));
+        "Cauchy stress: xx yy zz yz zx xy", elements(point_stress, 6 * rule.points));
     add(out, field::pressure, Location::element, 1, "MPa", Transport::reset_to_zero,
         "minus the mean of the normal stresses", elements(pressures(), 1));
     add(out, field::partition, Location::element, 1, "1", Transport::not_carried,
@@ -394,7 +395,7 @@ struct Model::Impl {
     if (!mixed)
       add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
           "volume of the point over its volume at zero pressure",
-          elements(now.volume_ratio, element_points));
+          elements(drop_filling(now.volume_ratio, rule), rule.points));
     return out;
   }
 
@@ -444,7 +445,7 @@ std::vector<core::Vec3> Model::departure_rates() const {
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
 
 mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,
-                                const material::CrystalLaw& law) {
+                                const material::CrystalLaw& law, int quadrature_points) {
   const auto size = static_cast<std::size_t>(law.layout().size());
   const auto grains = static_cast<std::size_t>(mesh.topology.cell_count());
   if (orientations.size() != grains)
@@ -454,13 +455,15 @@ mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quatern
   for (std::size_t g = 0; g < grains; ++g) law.initial_state(orientations[g], &states[g * size]);
   mesh::Snapshot out;
   out.mesh = std::move(mesh);
-  const std::size_t elements = out.mesh.tetrahedra.size();
-  std::vector<double> blocks(elements * size * element_points);
-  for (std::size_t e = 0; e < elements; ++e)
-    for (std::size_t c = 0; c < size; ++c)
-      for (std::size_t q = 0; q < element_points; ++q)
-        blocks[(e * size + c) * element_points + q] =
-            states[static_cast<std::size_t>(out.mesh.tetrahedron_cell[e]) * size + c];
+  out.quadrature_points = quadrature_points;
+  const auto slots = static_cast<std::size_t>(point_rule(quadrature_points).slots);
+  constexpr std::size_t lanes = material::lanes;
+  std::vector<double> blocks;
+  blocks.reserve(out.mesh.tetrahedra.size() * size * slots);
+  for (const int grain : out.mesh.tetrahedron_cell)
+    for (std::size_t block = 0; block < slots / lanes; ++block)
+      for (std::size_t c = 0; c < size; ++c)
+        blocks.insert(blocks.end(), lanes, states[static_cast<std::size_t>(grain) * size + c]);
   put_state(out, law, blocks);
   put(out,
       mesh::Field{field::displacement, Location::node, 3, "L", Transport::shape_functions,

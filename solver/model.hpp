@@ -73,6 +73,6 @@ class Model {
 
 /// A fresh snapshot: the state of an undeformed mesh whose grains have these orientations.
 mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,
-                                const material::CrystalLaw& law);
+                                const material::CrystalLaw& law, int quadrature_points = 4);
 
 }  // namespace polyslip::solver

@@ -30,22 +30,22 @@ PointVolumeResistance point_volume_resistance(const ElementGeometry& geometry,
   PointVolumeResistance resistance;
   resistance.kappa = kappa;
   double start = 0;  // V_n
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     resistance.reference[q] = geometry.weights[q] / volume_ratio[q];
     start += resistance.reference[q];
   }
   const double whole = std::log(geometry.volume / start);
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     resistance.s[q] = std::log(volume_ratio[q]) - whole;
     resistance.sum += resistance.reference[q] * resistance.s[q];
   }
   return resistance;
 }
 
-std::array<double, element_points> resistance_mean_stress(const PointVolumeResistance& resistance,
-                                                          const ElementGeometry& geometry) {
-  std::array<double, element_points> p{};
-  for (int q = 0; q < element_points; ++q)
+std::array<double, max_element_slots> resistance_mean_stress(
+    const PointVolumeResistance& resistance, const ElementGeometry& geometry) {
+  std::array<double, max_element_slots> p{};
+  for (int q = 0; q < geometry.points; ++q)
     p[q] = resistance.kappa * (resistance.reference[q] * resistance.s[q] / geometry.weights[q] -
                                resistance.sum / geometry.volume);
   return p;
@@ -53,10 +53,10 @@ std::array<double, element_points> resistance_mean_stress(const PointVolumeResis
 
 void add_resistance_tangent(const PointVolumeResistance& resistance,
                             const ElementGeometry& geometry, ElementMatrix& matrix) {
-  std::array<Gradient, element_points> g;
+  std::array<Gradient, max_element_points> g;
   Gradient mean{}, weighted{};  // G, sum W g
   double reference = 0;         // sum W
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < geometry.points; ++q) {
     g[q] = divergence(geometry, q);
     reference += resistance.reference[q];
     for (int i = 0; i < dofs; ++i) {
@@ -69,7 +69,7 @@ void add_resistance_tangent(const PointVolumeResistance& resistance,
     for (int c = 0; c < dofs; ++c) {
       double sum = (reference + resistance.sum) * mean[row] * mean[c] - weighted[row] * mean[c] -
                    mean[row] * weighted[c];
-      for (int q = 0; q < element_points; ++q)
+      for (int q = 0; q < geometry.points; ++q)
         sum += resistance.reference[q] * (1 - resistance.s[q]) * g[q][row] * g[q][c];
       out[dofs * row + c] += resistance.kappa * sum;
     }

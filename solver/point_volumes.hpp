@@ -27,10 +27,10 @@ inline constexpr double point_volume_limit = 0.2;
 double point_volume_modulus(double von_mises_stress, double strain_increment, double shear_modulus);
 
 struct PointVolumeResistance {
-  double kappa = 0;                                ///< MPa
-  std::array<double, element_points> reference{};  ///< W_q [length^3]
-  std::array<double, element_points> s{};          ///< s_q
-  double sum = 0;                                  ///< sum_q W_q s_q
+  double kappa = 0;                                   ///< MPa
+  std::array<double, max_element_slots> reference{};  ///< W_q [length^3], 0 beyond the points
+  std::array<double, max_element_slots> s{};          ///< s_q, 0 likewise
+  double sum = 0;                                     ///< sum_q W_q s_q
 };
 
 /// volume_ratio[q]: J_q over the step.
@@ -39,8 +39,8 @@ PointVolumeResistance point_volume_resistance(const ElementGeometry& geometry,
 
 /// The mean stress that the resistance adds at each point [MPa], from dU = sum_q w_q p_q div(du)_q:
 ///   p_q = kappa (W_q s_q / w_q - sum_r W_r s_r / V); its mean over the element is zero.
-std::array<double, element_points> resistance_mean_stress(const PointVolumeResistance& resistance,
-                                                          const ElementGeometry& geometry);
+std::array<double, max_element_slots> resistance_mean_stress(
+    const PointVolumeResistance& resistance, const ElementGeometry& geometry);
 
 /// Adds what the change of these mean stresses gives to the tangent; element_tangent has the part
 /// at constant mean stress. With g_q = d(div u)_q/du (30 numbers) and G = sum_q w_q g_q / V:

@@ -1,15 +1,36 @@
 #pragma once
-// Shape functions of the ten-node tetrahedron at its quadrature points, points innermost.
+// Shape functions of the ten-node tetrahedron at the points of a quadrature rule.
 
-#include "solver/element.hpp"
+#include <array>
+
+#include "material/crystal_law.hpp"
 
 namespace polyslip::solver {
 
-struct PointTable {
-  /// [direction][node][point] dN_a / dxi_L
-  double gradients[3][element_nodes][element_points];
-  double weights[element_points];  ///< they add up to 1/6
+inline constexpr int element_nodes = 10;
+inline constexpr int max_element_points = 15;
+inline constexpr int max_point_blocks = (max_element_points - 1) / material::lanes + 1;
+inline constexpr int max_element_slots = max_point_blocks * material::lanes;
+
+/// The points of an element stand in whole blocks of the material's lanes. Lanes beyond the last
+/// point repeat it with the weight zero: they are computed and count for nothing.
+struct PointRule {
+  int points = 0;  ///< 4, 8, 14 or 15
+  int blocks = 0;  ///< points / material::lanes, rounded up
+  int slots = 0;   ///< blocks * material::lanes: points and fillings
+  /// [block][direction][node][lane] dN_a / dxi_L
+  double gradients[max_point_blocks][3][element_nodes][material::lanes];
+  double weights[max_point_blocks][material::lanes];  ///< they add up to 1/6
+  /// The same point by point: [point][direction][node]
+  double point_gradients[max_element_points][3][element_nodes];
+
+  /// Index in an array [block][components][lane] of component c of the point q.
+  static constexpr int at(int components, int c, int q) {
+    return (q / material::lanes * components + c) * material::lanes + q % material::lanes;
+  }
 };
-const PointTable& point_table();
+
+/// Of mesh::tet_quadrature(points). Throws core::InternalError if there is no such rule.
+const PointRule& point_rule(int points);
 
 }  // namespace polyslip::solver

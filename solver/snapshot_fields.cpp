@@ -2,26 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 
 namespace polyslip::solver {
 namespace {
 
 using mesh::Location;
-constexpr std::size_t lanes = material::lanes;
 
-std::size_t entities(const mesh::Mesh& mesh, Location location) {
-  if (location == Location::node) return mesh.nodes.size();
-  return mesh.tetrahedra.size() * (location == Location::element ? 1 : lanes);
+std::size_t entities(const mesh::Snapshot& snapshot, Location location) {
+  if (location == Location::node) return snapshot.mesh.nodes.size();
+  const int each = location == Location::element ? 1 : snapshot.quadrature_points;
+  return snapshot.mesh.tetrahedra.size() * static_cast<std::size_t>(each);
+}
+
+/// Index of component c of the point or filling `slot` in [elements][blocks][size][lane].
+std::size_t in_blocks(const PointRule& rule, std::size_t size, std::size_t element, std::size_t c,
+                      int slot) {
+  return element * size * static_cast<std::size_t>(rule.slots) +
+         static_cast<std::size_t>(PointRule::at(static_cast<int>(size), static_cast<int>(c), slot));
 }
 
 }  // namespace
 
-void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law) {
-  if (snapshot.mesh.order != 2 || snapshot.quadrature_points != material::lanes ||
-      snapshot.mesh.tetrahedra.empty())
-    throw core::InternalError(
-        "Model: the snapshot needs a mesh of order 2, four points an element");
+void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law, int points) {
+  if (snapshot.mesh.order != 2 || snapshot.mesh.tetrahedra.empty())
+    throw core::InternalError("Model: the snapshot needs a mesh of order 2");
+  if (snapshot.quadrature_points != points)
+    throw core::InternalError(fmt::format("Model: the snapshot has {} points an element, not {}",
+                                          snapshot.quadrature_points, points));
   for (const auto& wanted : law.layout().fields) {
     const auto* f = snapshot.find(wanted.name, Location::quadrature_point);
     if (!f || f->components != wanted.components)
@@ -29,7 +39,7 @@ void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& la
           fmt::format("Model: the snapshot lacks the state field \"{}\"", wanted.name));
   }
   for (const auto& f : snapshot.fields)
-    if (f.values.size() != entities(snapshot.mesh, f.location) * f.components)
+    if (f.values.size() != entities(snapshot, f.location) * f.components)
       throw core::InternalError(
           fmt::format("Model: field \"{}\" has {} values", f.name, f.values.size()));
 }
@@ -37,15 +47,20 @@ void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& la
 std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material::CrystalLaw& law) {
   const auto size = static_cast<std::size_t>(law.layout().size());
   const std::size_t elements = snapshot.mesh.tetrahedra.size();
-  std::vector<double> blocks(elements * size * lanes);
+  const PointRule& rule = point_rule(snapshot.quadrature_points);
+  const auto points = static_cast<std::size_t>(rule.points);
+  std::vector<double> blocks(elements * size * static_cast<std::size_t>(rule.slots));
   std::size_t offset = 0;
   for (const auto& wanted : law.layout().fields) {
     const auto& values = snapshot.find(wanted.name, Location::quadrature_point)->values;
     const auto components = static_cast<std::size_t>(wanted.components);
     for (std::size_t e = 0; e < elements; ++e)
-      for (std::size_t q = 0; q < lanes; ++q)
+      for (int slot = 0; slot < rule.slots; ++slot) {
+        const auto q = static_cast<std::size_t>(std::min(slot, rule.points - 1));
         for (std::size_t c = 0; c < components; ++c)
-          blocks[(e * size + offset + c) * lanes + q] = values[(e * lanes + q) * components + c];
+          blocks[in_blocks(rule, size, e, offset + c, slot)] =
+              values[(e * points + q) * components + c];
+      }
     offset += components;
   }
   return blocks;
@@ -55,6 +70,25 @@ std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string&
                               Location location) {
   const auto* f = snapshot.find(name, location);
   return f ? f->values : std::vector<double>{};
+}
+
+std::vector<double> fill_slots(const std::vector<double>& values, const PointRule& rule) {
+  std::vector<double> out;
+  out.reserve(values.size() / static_cast<std::size_t>(rule.points) *
+              static_cast<std::size_t>(rule.slots));
+  const std::ptrdiff_t points = rule.points;
+  for (auto at = values.begin(); at != values.end(); at += points) {
+    out.insert(out.end(), at, at + points);
+    out.insert(out.end(), static_cast<std::size_t>(rule.slots - rule.points), *(at + points - 1));
+  }
+  return out;
+}
+
+std::vector<double> drop_filling(const std::vector<double>& values, const PointRule& rule) {
+  std::vector<double> out;
+  for (auto at = values.begin(); at != values.end(); at += rule.slots)
+    out.insert(out.end(), at, at + rule.points);
+  return out;
 }
 
 void put(mesh::Snapshot& snapshot, mesh::Field field) {
@@ -70,6 +104,8 @@ void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
                const std::vector<double>& blocks) {
   const auto size = static_cast<std::size_t>(law.layout().size());
   const std::size_t elements = snapshot.mesh.tetrahedra.size();
+  const PointRule& rule = point_rule(snapshot.quadrature_points);
+  const auto points = static_cast<std::size_t>(rule.points);
   std::size_t offset = 0;
   for (const auto& part : law.layout().fields) {
     const auto components = static_cast<std::size_t>(part.components);
@@ -80,11 +116,12 @@ void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
                   part.transport,
                   part.description,
                   {}};
-    f.values.resize(elements * lanes * components);
+    f.values.resize(elements * points * components);
     for (std::size_t e = 0; e < elements; ++e)
-      for (std::size_t q = 0; q < lanes; ++q)
+      for (int q = 0; q < rule.points; ++q)
         for (std::size_t c = 0; c < components; ++c)
-          f.values[(e * lanes + q) * components + c] = blocks[(e * size + offset + c) * lanes + q];
+          f.values[(e * points + static_cast<std::size_t>(q)) * components + c] =
+              blocks[in_blocks(rule, size, e, offset + c, q)];
     put(snapshot, std::move(f));
     offset += components;
   }

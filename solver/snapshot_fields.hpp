@@ -7,6 +7,7 @@
 
 #include "material/crystal_law.hpp"
 #include "mesh/snapshot.hpp"
+#include "solver/reference_element.hpp"
 
 namespace polyslip::solver {
 
@@ -28,11 +29,12 @@ inline const std::string load_program = "load_program";               // LoadPro
 inline const std::string partition_ranks = "solver_partition_ranks";  // {ranks}
 }  // namespace field
 
-/// Throws core::InternalError unless the snapshot has a mesh of order 2, four points an element and
-/// each state field of the law, of the right size.
-void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law);
+/// Throws core::InternalError unless the snapshot has a mesh of order 2, so many points an element
+/// and each state field of the law, of the right size.
+void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law, int points);
 
-/// The law's state in blocks: [elements][layout size][4].
+/// The law's state in blocks: [elements][blocks][layout size][4], the last block filled with
+/// repetitions of the last point (solver/reference_element.hpp).
 std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material::CrystalLaw& law);
 
 /// Values of a field; empty if there is none.
@@ -41,6 +43,11 @@ std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string&
 
 /// Replaces the field of that name and location, or adds it.
 void put(mesh::Snapshot& snapshot, mesh::Field field);
+
+/// Numbers of points with those that fill blocks, [elements][slots], out of [elements][points], and
+/// back.
+std::vector<double> fill_slots(const std::vector<double>& values, const PointRule& rule);
+std::vector<double> drop_filling(const std::vector<double>& values, const PointRule& rule);
 
 /// The state fields out of blocks, put into the snapshot.
 void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,

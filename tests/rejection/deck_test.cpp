@@ -45,6 +45,8 @@ TEST(PolycrystalDeck, ASeedIsRefusedWithItsLine) {
 }
 
 const WrongDeck wrong_decks[] = {
+    {"NoRuleOfSoManyPoints", "[solver]\nquadrature_points = 5\n",
+     "deck.toml:2:21: [solver] quadrature_points = 5 must be one of 4, 8, 14, 15"},
     {"UnknownKey", "[material]\nh_0 = 4.0\n",
      "deck.toml:2:1: [material] unknown key 'h_0'; did you mean 'h0'?"},
     {"KeyOfAnotherTable", "[mesh]\nfinal_strain = 0.5\n",

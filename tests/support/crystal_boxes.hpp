@@ -40,14 +40,15 @@ inline mesh::Snapshot crystal_box(MPI_Comm comm, const material::CrystalLaw& law
 
 /// A few slabs of different orientations on a distorted mesh: 216 elements.
 inline mesh::Snapshot slab_box(MPI_Comm comm, const material::CrystalLaw& law,
-                               const core::Quaternion& rotation = core::Quaternion::Identity()) {
+                               const core::Quaternion& rotation = core::Quaternion::Identity(),
+                               int points = 4) {
   if (!on_root(comm)) return {};
   auto m = box_mesh({4, 3, 3}, {2, 1.5, 1.2}, 4);
   distort(m, 0.1);
   for (auto& x : m.nodes) x = rotation * x;
   auto orientations = some_orientations(4);
   for (auto& q : orientations) q = rotation * q;
-  return solver::initial_snapshot(std::move(m), orientations, law);
+  return solver::initial_snapshot(std::move(m), orientations, law, points);
 }
 
 /// Uniaxial tension along z with free sides: strain = ln(h/h0).

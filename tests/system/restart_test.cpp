@@ -139,6 +139,30 @@ void kill_at_every_moment(int ranks) {
 TEST(Restart, AfterAKillAtAnyMomentEndsTheSame) { kill_at_every_moment(0); }
 TEST(Restart, AfterAKillAtAnyMomentEndsTheSameOnTwoRanks) { kill_at_every_moment(2); }
 
+/// Fifteen points fill four blocks but for one lane; their states cross the remeshing too.
+TEST(Restart, KeepsTheStatesOfOtherElementsAndPoints) {
+  Sandbox sandbox;
+  const std::string deck = small_deck("", "element = \"displacement\"\nquadrature_points = 15\n");
+  run_deck(sandbox, 0, deck, "undisturbed");
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  const fs::path run = sandbox.path() / "killed";
+  EXPECT_EQ(last_state(sandbox.path() / "undisturbed").quadrature_points, 15);
+  sandbox.write("killed.toml", deck);
+  Program program(on_ranks(0, {"run", "killed.toml", "--out", "killed"}), sandbox.path());
+  ASSERT_TRUE(eventually(120, [&] { return has_checkpoint(run, 1) || program.ended(); }));
+  kill_job(program);
+  program.wait();
+  const Outcome outcome = run_polyslip({"run", "--restart", "killed"}, sandbox.path());
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("going on from strain"), std::string::npos) << outcome.out;
+  expect_same_run(sandbox.path() / "undisturbed", run);
+  const Outcome table = run_polyslip(
+      {"convert", "killed/results/state-0004.h5", "--value", "centroid", "--to", "table.csv"},
+      sandbox.path());
+  EXPECT_EQ(table.code, 0) << table.err;
+  EXPECT_GT(line_count(sandbox.path() / "table.csv"), 100);
+}
+
 /// What a kill can leave: rows, states and meshes beyond the checkpoint, torn lines, parts of
 /// files.
 TEST(Restart, TrimsWhatIsLaterThanItsCheckpoint) {

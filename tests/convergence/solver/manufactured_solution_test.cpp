@@ -84,7 +84,8 @@ struct Problem {
 };
 
 /// kappa: modulus of the points' volumes (solver/point_volumes.hpp).
-Errors solve(double element_size, double bulk, bool mixed, double kappa = 0) {
+Errors solve(double element_size, double bulk, bool mixed, double kappa = 0, int points = 4) {
+  const PointRule& rule = point_rule(points);
   const Problem problem(element_size);
   const LocalMesh& local = problem.distribution.local();
   const Solution exact{bulk};
@@ -97,8 +98,8 @@ Errors solve(double element_size, double bulk, bool mixed, double kappa = 0) {
   Configuration old;
   for (const auto& node : problem.mesh.nodes) old.x.insert(old.x.end(), node.begin(), node.end());
   old.p.assign(local.elements.size(), 0);
-  old.volume_ratio.assign(local.elements.size() * 4, 1);
-  old.state.assign(local.elements.size() * 24, 0);
+  old.volume_ratio.assign(local.elements.size() * static_cast<std::size_t>(rule.slots), 1);
+  old.state.assign(local.elements.size() * 6 * static_cast<std::size_t>(rule.slots), 0);
   NewtonProblem step{old, 1.0, amplitude, kappa, 0, std::vector<double>(old.x.size(), 0)};
   problem.for_each_point([&](int e, const auto& shape, const Vec3& x, double weight) {
     const Vec3 b = exact.body_force(x);
@@ -108,7 +109,7 @@ Errors solve(double element_size, double bulk, bool mixed, double kappa = 0) {
             weight * shape[a] * b[i];
   });
 
-  Discretisation discretisation(local, problem.exchange, law, mixed, old.x, {});
+  Discretisation discretisation(local, problem.exchange, law, mixed, rule, old.x, {});
   SolverOptions options;
   options.newton_tolerance = 1e-6;
   options.linear_tolerance = 1e-6;
@@ -172,6 +173,18 @@ TEST(ManufacturedSolution, PointsVolumesCostTheMixedElementNoOrder) {
 
 TEST(ManufacturedSolution, DisplacementElementIsOfThirdOrderWhenCompressible) {
   const Errors coarse = solve(coarse_size, 10, false), fine = solve(coarse_size / 2, 10, false);
+  EXPECT_GT(order(coarse, fine, &Errors::displacement), 2.8);
+  EXPECT_LT(fine.displacement, 0.01);
+  EXPECT_GT(fine.displacement, 1e-6);
+}
+
+TEST(ManufacturedSolution, BothElementsKeepTheirOrdersWithFifteenPoints) {
+  const Errors mixed_coarse = solve(coarse_size, 1e5, true, 0, 15),
+               mixed_fine = solve(coarse_size / 2, 1e5, true, 0, 15);
+  EXPECT_GT(order(mixed_coarse, mixed_fine, &Errors::displacement), 1.85);
+  EXPECT_GT(order(mixed_coarse, mixed_fine, &Errors::pressure), 0.9);
+  const Errors coarse = solve(coarse_size, 10, false, 0, 15),
+               fine = solve(coarse_size / 2, 10, false, 0, 15);
   EXPECT_GT(order(coarse, fine, &Errors::displacement), 2.8);
   EXPECT_LT(fine.displacement, 0.01);
   EXPECT_GT(fine.displacement, 1e-6);

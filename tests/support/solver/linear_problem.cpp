@@ -154,26 +154,36 @@ void to_petsc(const std::vector<double>& from, Vec v) {
 
 bool fixed(const double* x, int dof) { return x[dof] < 1e-9 || (dof > 0 && x[dof] > 1 - 1e-9); }
 
-/// Stress and tangent of element e's points; numbers that depend on the mesh's element alone.
+const solver::PointRule& rule_of(const LinearProblem& p) {
+  return solver::point_rule(p.layout.points);
+}
+
+/// Stress and tangent of element e's points, and of the lanes that fill its last block; numbers
+/// that depend on the mesh's element alone.
 void set_points(LinearProblem& p, std::size_t e, std::uint64_t random, const Mat6& tangent,
                 const LinearProblemOptions& o) {
-  for (int q = 0; q < solver::element_points; ++q) {
+  const auto slots = static_cast<std::size_t>(rule_of(p).slots);
+  for (int q = 0; q < rule_of(p).slots; ++q) {
+    const auto at = [&](int components, int c) {
+      return static_cast<std::size_t>(components) * slots * e +
+             static_cast<std::size_t>(solver::PointRule::at(components, c, q));
+    };
     for (int i = 0; i < 6; ++i)
       for (int k = 0; k < 3; ++k)
         for (int l = 0; l < 3; ++l) {
           Mat3 h = Mat3::Zero();
           h(k, l) = 1;
-          p.tangent[216 * e + 4 * (9 * i + 3 * k + l) + q] =
+          p.tangent[at(54, 9 * i + 3 * k + l)] =
               tangent.row(i).dot(mandel(0.5 * (h + h.transpose())));
         }
     double trace = 0;
     for (int i = 0; i < 6; ++i) {
-      double& s = p.stress[24 * e + 4 * i + q];
+      double& s = p.stress[at(6, i)];
       s = o.stress * (uniform(random) - 0.5);
       if (i < 3) trace += s;
     }
-    for (int i = 0; i < 3; ++i) p.stress[24 * e + 4 * i + q] -= trace / 3;
-    p.mean_stress[4 * e + q] = o.stress * (uniform(random) - 0.5);
+    for (int i = 0; i < 3; ++i) p.stress[at(6, i)] -= trace / 3;
+    p.mean_stress[at(1, 0)] = o.stress * (uniform(random) - 0.5);
   }
 }
 
@@ -182,19 +192,20 @@ solver::ElementGeometry geometry_of(const LinearProblem& p, int e) {
   for (int a = 0; a < 10; ++a)
     for (int i = 0; i < 3; ++i) at[a][i] = p.x[3 * p.mesh->local().elements[e][a] + i];
   solver::ElementGeometry g;
-  solver::element_geometry(at, g);
+  solver::element_geometry(rule_of(p), at, g);
   return g;
 }
 
 void set_scalars(LinearProblem& p, int e, double mu, std::uint64_t random,
                  const LinearProblemOptions& o) {
   const auto g = geometry_of(p, e);
-  std::array<double, 4> ratio{};
-  for (double& r : ratio) r = 1 + 0.1 * (uniform(random) - 0.5);
+  const auto slots = rule_of(p).slots;
+  std::array<double, solver::max_element_points> ratio{};
+  for (int q = 0; q < o.points; ++q) ratio[q] = 1 + 0.1 * (uniform(random) - 0.5);
   const auto r = solver::point_volume_resistance(g, ratio.data(), p.kappa);
-  for (int q = 0; q < 4; ++q) {
-    p.reference[4 * e + q] = r.reference[q];
-    p.departure[4 * e + q] = r.s[q];
+  for (int q = 0; q < slots; ++q) {
+    p.reference[slots * e + q] = r.reference[q];
+    p.departure[slots * e + q] = r.s[q];
   }
   solver::ElementForces b;
   solver::element_volume_gradient(g, b);
@@ -222,6 +233,7 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
   p.layout.local = &local;
   p.layout.exchange = p.exchange.get();
   p.layout.mixed = o.mixed;
+  p.layout.points = o.points;
   std::vector<double> lift;
   for (int n : local.node_mesh) {
     const Vec3 x = cube.position(n);
@@ -241,9 +253,10 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
   p.bulk = o.bulk_to_shear * mean_mu;
   p.kappa = o.resistance * mean_mu;
   const std::size_t n = local.elements.size();
-  p.stress.resize(24 * n);
-  p.tangent.resize(216 * n);
-  for (auto* v : {&p.mean_stress, &p.reference, &p.departure}) v->resize(4 * n);
+  const std::size_t slots = n * static_cast<std::size_t>(rule_of(p).slots);
+  p.stress.resize(6 * slots);
+  p.tangent.resize(54 * slots);
+  for (auto* v : {&p.mean_stress, &p.reference, &p.departure}) v->resize(slots);
   for (auto* v : {&p.scale, &p.C, &p.W, &p.schur}) v->resize(n);
   for (std::size_t e = 0; e < n; ++e) {
     const int number = local.element_mesh[e];
@@ -288,17 +301,16 @@ solver::LinearBlocks LinearProblem::blocks() const {
 
 void LinearProblem::element(int e, solver::ElementMatrix& matrix, solver::ElementForces& b) const {
   const auto g = geometry_of(*this, e);
-  std::array<double, 4> mean{};
-  std::copy_n(&mean_stress[4 * e], 4, mean.begin());
-  solver::element_tangent(g, &stress[24 * e], &tangent[216 * e], mean, layout.mixed ? 0 : bulk,
-                          matrix);
+  const int slots = rule_of(*this).slots;
+  solver::element_tangent(g, &stress[6 * slots * e], &tangent[54 * slots * e],
+                          &mean_stress[slots * e], layout.mixed ? 0 : bulk, matrix);
   solver::element_volume_gradient(g, b);
   if (!layout.mixed || kappa == 0) return;
   solver::PointVolumeResistance r;
   r.kappa = kappa;
-  std::copy_n(&reference[4 * e], 4, r.reference.begin());
-  std::copy_n(&departure[4 * e], 4, r.s.begin());
-  for (int q = 0; q < 4; ++q) r.sum += r.reference[q] * r.s[q];
+  std::copy_n(&reference[slots * e], slots, r.reference.begin());
+  std::copy_n(&departure[slots * e], slots, r.s.begin());
+  for (int q = 0; q < slots; ++q) r.sum += r.reference[q] * r.s[q];
   solver::add_resistance_tangent(r, g, matrix);
 }
 

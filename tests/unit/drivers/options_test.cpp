@@ -168,6 +168,8 @@ min_interval = 0.07
 orthotropic_share = 0.5
 max_grain_volume_change = 0.01
 [solver]
+element = "displacement"
+quadrature_points = 8
 newton_tolerance = 1e-9
 max_newton_iterations = 30
 linear_tolerance = 1e-8
@@ -261,6 +263,8 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.remeshing.min_interval, 0.07);
   EXPECT_EQ(o.remeshing.orthotropic_share, 0.5);
   EXPECT_EQ(o.remeshing.max_grain_volume_change, 0.01);
+  EXPECT_EQ(o.solver.element, "displacement");
+  EXPECT_EQ(o.solver.quadrature_points, 8);
   EXPECT_EQ(o.solver.newton_tolerance, 1e-9);
   EXPECT_EQ(o.solver.max_newton_iterations, 30);
   EXPECT_EQ(o.solver.linear_tolerance, 1e-8);

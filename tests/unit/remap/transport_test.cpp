@@ -4,6 +4,7 @@
 
 #include "core/error.hpp"
 #include "core/rotation.hpp"
+#include "mesh/quadrature.hpp"
 #include "remap/audit.hpp"
 #include "remap/donor_average.hpp"
 #include "remap/remesh.hpp"
@@ -19,8 +20,9 @@ using mesh::Field;
 Vec3 curl(const Vec3& x) { return {0.03 * x[1] * x[1], 0.02 * x[0] * x[2], 0.01 * x[0] * x[1]}; }
 
 /// Two grains, coarse; state constant in each element, orientation constant in each grain.
-mesh::Snapshot old_snapshot() {
+mesh::Snapshot old_snapshot(int points = 4) {
   mesh::Snapshot s;
+  s.quadrature_points = points;
   s.mesh = tests::box_mesh({4, 2, 2}, Vec3(2, 1, 1), 2);
   s.strain = 0.3;
   s.time = 0.31;
@@ -40,7 +42,7 @@ mesh::Snapshot old_snapshot() {
       "elastic_strain", mesh::Location::quadrature_point, 5, "1", Transport::reset_to_zero, "", {}};
   Field history{"velocity", mesh::Location::node, 3, "1/s", Transport::not_carried, "", {}};
   for (int e = 0; e < s.mesh.element_count(); ++e)
-    for (int q = 0; q < 4; ++q) {
+    for (int q = 0; q < points; ++q) {
       const int grain = s.mesh.tetrahedron_cell[e];
       g.values.push_back(10 + grain + 0.1 * (q - 1.5));
       // The same rotation with changing sign: a mean that adds components would be zero.
@@ -68,6 +70,29 @@ TEST(Transport, CarriesElementMeansWithinTheGrain) {
   ASSERT_EQ(g->values.size(), 4u * fresh.mesh.tetrahedra.size());
   for (std::size_t i = 0; i < g->values.size(); ++i)
     EXPECT_NEAR(g->values[i], 10 + fresh.mesh.tetrahedron_cell[i / 4], 1e-12);
+}
+
+/// The weights differ, so that a plain mean would be another number.
+TEST(Transport, WeighsOtherNumbersOfPointsByTheirRule) {
+  for (const int points : {8, 14, 15}) {
+    SCOPED_TRACE(points);
+    const mesh::Snapshot fresh =
+        transport(old_snapshot(points), tests::box_mesh({6, 3, 3}, Vec3(2, 1, 1), 2));
+    double mean = 0, plain = 0;
+    for (int q = 0; q < points; ++q) {
+      mean += 6 * mesh::tet_quadrature(points)[q].weight * 0.1 * (q - 1.5);
+      plain += 0.1 * (q - 1.5) / points;
+    }
+    EXPECT_GT(std::abs(mean - plain), 1e-3);
+    EXPECT_EQ(fresh.quadrature_points, points);
+    const Field* g = fresh.find("g");
+    ASSERT_TRUE(g);
+    ASSERT_EQ(g->values.size(), static_cast<std::size_t>(points) * fresh.mesh.tetrahedra.size());
+    for (std::size_t i = 0; i < g->values.size(); ++i) {
+      const int grain = fresh.mesh.tetrahedron_cell[i / static_cast<std::size_t>(points)];
+      EXPECT_NEAR(g->values[i], 10 + grain + mean, 1e-12);
+    }
+  }
 }
 
 TEST(Transport, ResetsStressesAndDropsHistory) {

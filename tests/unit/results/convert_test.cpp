@@ -17,11 +17,11 @@ using mesh::Location;
 using results::ElementValue;
 using tests::fabricated_snapshot;
 
-/// Positions of all quadrature points.
-std::vector<core::Vec3> point_positions(const mesh::Mesh& mesh) {
+/// Positions of all quadrature points, so many an element.
+std::vector<core::Vec3> point_positions(const mesh::Mesh& mesh, int points) {
   std::vector<core::Vec3> all;
   for (const auto& nodes : mesh.tetrahedra)
-    for (const auto& point : mesh::tet_quadrature_4()) {
+    for (const auto& point : mesh::tet_quadrature(points)) {
       const auto n = mesh::tet10_shape(point.xi);
       core::Vec3 x = core::Vec3::Zero();
       for (int i = 0; i < 10; ++i) x += n[i] * mesh.nodes[nodes[i]];
@@ -45,19 +45,43 @@ TEST(ElementValues, VolumesAndCentroidsOfCurvedElementsAddUp) {
 }
 
 TEST(ElementValues, CentroidOfALinearFieldIsExactOnStraightElements) {
-  auto s = fabricated_snapshot(2, 0);
-  tests::distort(s.mesh, 0.1);
-  const auto points = point_positions(s.mesh);
-  auto& strain = s.find("equivalent_strain", Location::quadrature_point)->values;
-  for (std::size_t p = 0; p < points.size(); ++p)
-    strain[p] = 1 + 2 * points[p][0] - 3 * points[p][1] + 0.5 * points[p][2];
-  for (const auto value : {ElementValue::centroid, ElementValue::average}) {
-    const auto t = results::element_values(s, value);
-    for (int e = 0; e < s.mesh.element_count(); ++e) {
-      const auto& x = t.centroid[e];
-      EXPECT_NEAR(t.equivalent_strain[e], 1 + 2 * x[0] - 3 * x[1] + 0.5 * x[2], 1e-13);
+  for (const int points : mesh::tet_quadrature_sizes) {
+    SCOPED_TRACE(points);
+    mesh::Snapshot s;
+    s.mesh = tests::two_grains(2);
+    s.quadrature_points = points;
+    tests::distort(s.mesh, 0.1);
+    mesh::Field strain{"equivalent_strain",
+                       Location::quadrature_point,
+                       1,
+                       "1",
+                       core::Transport::element_average,
+                       "made up",
+                       {}};
+    for (const core::Vec3& x : point_positions(s.mesh, points))
+      strain.values.push_back(1 + 2 * x[0] - 3 * x[1] + 0.5 * x[2]);
+    s.fields.push_back(strain);
+    for (const auto value : {ElementValue::centroid, ElementValue::average}) {
+      const auto t = results::element_values(s, value);
+      for (int e = 0; e < s.mesh.element_count(); ++e) {
+        const auto& x = t.centroid[e];
+        EXPECT_NEAR(t.equivalent_strain[e], 1 + 2 * x[0] - 3 * x[1] + 0.5 * x[2], 1e-13);
+      }
     }
   }
+}
+
+TEST(ElementValues, OfFifteenPointsTheOneAtTheCentroidIsItsValue) {
+  mesh::Snapshot s;
+  s.mesh = tests::two_grains(1);
+  s.quadrature_points = 15;
+  tests::Numbers numbers;
+  const std::size_t rows = 15 * s.mesh.tetrahedra.size();
+  s.fields.push_back(
+      tests::field("equivalent_strain", Location::quadrature_point, 1, "1", rows, numbers));
+  const auto t = results::element_values(s, ElementValue::centroid);
+  for (std::size_t e = 0; e < s.mesh.tetrahedra.size(); ++e)
+    EXPECT_EQ(t.equivalent_strain[e], s.fields[0].values[15 * e]);
 }
 
 TEST(ElementValues, AverageWeighsPointsByTheirVolume) {

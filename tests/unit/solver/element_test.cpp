@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "mesh/mesh.hpp"
+#include "mesh/quadrature.hpp"
 #include "support/elastic_law.hpp"
 
 namespace polyslip::solver {
@@ -41,22 +42,22 @@ ElementPositions curved_element(double amount) {
 /// An element of the test law between two configurations.
 struct Evaluated {
   ElementGeometry geometry;
-  std::array<double, 24> stress{}, state{}, state_old{};
-  std::array<double, 216> tangent{};
-  std::array<double, 4> mean_stress{};
+  std::array<double, 6 * max_element_slots> stress{}, state{}, state_old{};
+  std::array<double, 54 * max_element_slots> tangent{};
+  std::array<double, max_element_slots> mean_stress{};
   ElementForces forces{};
 };
 
-Evaluated evaluate(const ElementPositions& x_old, const ElementPositions& x, double mean_stress,
-                   double bulk) {
+Evaluated evaluate(const PointRule& rule, const ElementPositions& x_old, const ElementPositions& x,
+                   double mean_stress, double bulk) {
   Evaluated e;
   const tests::ElasticLaw law(30.0, 100.0);
-  std::array<double, 36> f{};
-  std::array<material::PointStatus, 4> status{};
-  EXPECT_TRUE(element_geometry(x, e.geometry));
+  std::array<double, 9 * max_element_slots> f{};
+  std::array<material::PointStatus, max_element_slots> status{};
+  EXPECT_TRUE(element_geometry(rule, x, e.geometry));
   EXPECT_TRUE(relative_gradients(x_old, e.geometry, f.data()));
   material::PointBlocks b;
-  b.n_blocks = 1;
+  b.n_blocks = rule.blocks;
   b.relative_gradient = f.data();
   b.state_old = e.state_old.data();
   b.state_new = e.state.data();
@@ -65,19 +66,19 @@ Evaluated evaluate(const ElementPositions& x_old, const ElementPositions& x, dou
   b.status = status.data();
   law.update(b);
   ElementGeometry before;
-  EXPECT_TRUE(element_geometry(x_old, before));
-  for (int q = 0; q < 4; ++q)
+  EXPECT_TRUE(element_geometry(rule, x_old, before));
+  for (int q = 0; q < rule.points; ++q)
     e.mean_stress[q] = mean_stress + bulk * std::log(e.geometry.weights[q] / before.weights[q]);
-  element_forces(e.geometry, e.stress.data(), e.mean_stress, e.forces);
+  element_forces(e.geometry, e.stress.data(), e.mean_stress.data(), e.forces);
   return e;
 }
 
-void expect_tangent_of_forces(double bulk) {
+void expect_tangent_of_forces(const PointRule& rule, double bulk) {
   const ElementPositions x_old = curved_element(0.02), x = curved_element(0.05);
-  const Evaluated here = evaluate(x_old, x, 7.0, bulk);
+  const Evaluated here = evaluate(rule, x_old, x, 7.0, bulk);
   ElementMatrix K;
-  element_tangent(here.geometry, here.stress.data(), here.tangent.data(), here.mean_stress, bulk,
-                  K);
+  element_tangent(here.geometry, here.stress.data(), here.tangent.data(), here.mean_stress.data(),
+                  bulk, K);
   const double h = 1e-6;
   double largest = 0;
   for (int b = 0; b < 10; ++b)
@@ -85,7 +86,8 @@ void expect_tangent_of_forces(double bulk) {
       ElementPositions up = x, down = x;
       up[b][k] += h;
       down[b][k] -= h;
-      const auto above = evaluate(x_old, up, 7.0, bulk), below = evaluate(x_old, down, 7.0, bulk);
+      const auto above = evaluate(rule, x_old, up, 7.0, bulk),
+                 below = evaluate(rule, x_old, down, 7.0, bulk);
       for (int a = 0; a < 10; ++a)
         for (int i = 0; i < 3; ++i) {
           const double difference = (above.forces[a][i] - below.forces[a][i]) / (2 * h);
@@ -96,13 +98,24 @@ void expect_tangent_of_forces(double bulk) {
   EXPECT_GT(largest, 1.0);
 }
 
-TEST(Element, TangentMatchesDifferencesAtConstantMeanStress) { expect_tangent_of_forces(0); }
-TEST(Element, TangentMatchesDifferencesOfTheDisplacementElement) { expect_tangent_of_forces(80); }
+class Element : public ::testing::TestWithParam<int> {
+ protected:
+  const PointRule& rule() const { return point_rule(GetParam()); }
+};
 
-TEST(Element, VolumeGradientMatchesDifferences) {
+INSTANTIATE_TEST_SUITE_P(Points, Element, ::testing::ValuesIn(mesh::tet_quadrature_sizes));
+
+TEST_P(Element, TangentMatchesDifferencesAtConstantMeanStress) {
+  expect_tangent_of_forces(rule(), 0);
+}
+TEST_P(Element, TangentMatchesDifferencesOfTheDisplacementElement) {
+  expect_tangent_of_forces(rule(), 80);
+}
+
+TEST_P(Element, VolumeGradientMatchesDifferences) {
   const ElementPositions x = curved_element(0.05);
   ElementGeometry g;
-  ASSERT_TRUE(element_geometry(x, g));
+  ASSERT_TRUE(element_geometry(rule(), x, g));
   EXPECT_GT(g.volume, 0.1);
   EXPECT_GT(g.min_jacobian_ratio, 0);
   EXPECT_LT(g.min_jacobian_ratio, 1);
@@ -114,12 +127,12 @@ TEST(Element, VolumeGradientMatchesDifferences) {
       up[a][i] += 1e-6;
       down[a][i] -= 1e-6;
       ElementGeometry above, below;
-      ASSERT_TRUE(element_geometry(up, above) && element_geometry(down, below));
+      ASSERT_TRUE(element_geometry(rule(), up, above) && element_geometry(rule(), down, below));
       EXPECT_NEAR(b[a][i], (above.volume - below.volume) / 2e-6, 1e-8);
     }
 }
 
-TEST(Element, RelativeGradientIsThatOfALinearMotion) {
+TEST_P(Element, RelativeGradientIsThatOfALinearMotion) {
   const ElementPositions x_old = curved_element(0.03);
   const double F[3][3] = {{1.1, 0.2, 0}, {-0.1, 0.9, 0.05}, {0.02, 0, 1.03}};
   ElementPositions x{};
@@ -127,27 +140,28 @@ TEST(Element, RelativeGradientIsThatOfALinearMotion) {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) x[a][i] += F[i][j] * x_old[a][j];
   ElementGeometry g;
-  ASSERT_TRUE(element_geometry(x, g));
-  std::array<double, 36> f{};
+  ASSERT_TRUE(element_geometry(rule(), x, g));
+  std::array<double, 9 * max_element_slots> f{};
   ASSERT_TRUE(relative_gradients(x_old, g, f.data()));
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      for (int q = 0; q < 4; ++q) EXPECT_NEAR(f[(3 * i + j) * 4 + q], F[i][j], 1e-13);
+      for (int slot = 0; slot < rule().slots; ++slot)
+        EXPECT_NEAR(f[PointRule::at(9, 3 * i + j, slot)], F[i][j], 1e-13) << slot;
 }
 
-TEST(Element, AnInvertedOrNanElementIsRefused) {
+TEST_P(Element, AnInvertedOrNanElementIsRefused) {
   ElementPositions x = curved_element(0.0);
   ElementGeometry g;
   for (auto& node : x) node[2] = -node[2];
-  EXPECT_FALSE(element_geometry(x, g));
+  EXPECT_FALSE(element_geometry(rule(), x, g));
   x = curved_element(0.0);
   x[3][2] = std::nan("");
-  EXPECT_FALSE(element_geometry(x, g));
+  EXPECT_FALSE(element_geometry(rule(), x, g));
 }
 
-TEST(Element, ShearModulusIsTheLaws) {
+TEST_P(Element, ShearModulusIsTheLaws) {
   const ElementPositions x = curved_element(0.02);
-  const Evaluated e = evaluate(x, x, 0, 0);
+  const Evaluated e = evaluate(rule(), x, x, 0, 0);
   EXPECT_NEAR(element_shear_modulus(e.geometry, e.tangent.data()), 30.0, 1e-10);
 }
 

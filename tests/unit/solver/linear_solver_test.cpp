@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "mesh/quadrature.hpp"
 #include "solver/exchange.hpp"
 #include "support/solver/linear_problem.hpp"
 
@@ -259,11 +260,23 @@ std::vector<double> some_numbers(const std::vector<int>& mesh_number, int compon
   return out;
 }
 
+/// Small problems of both elements with each quadrature rule.
+std::vector<LinearProblemOptions> every_element() {
+  std::vector<LinearProblemOptions> all;
+  for (const int points : mesh::tet_quadrature_sizes)
+    for (const bool mixed : {true, false}) {
+      LinearProblemOptions o;
+      o.cells = points == 4 ? 3 : 2;
+      o.mixed = mixed;
+      o.points = points;
+      all.push_back(o);
+    }
+  return all;
+}
+
 TEST(KrylovOperator, IsThatOfTheElementsMatrices) {
-  for (const bool mixed : {true, false}) {
-    LinearProblemOptions o;
-    o.cells = 3;
-    o.mixed = mixed;
+  for (LinearProblemOptions o : every_element()) {
+    SCOPED_TRACE(o.points);
     o.bulk_to_shear = 50;
     o.resistance = 2;
     o.stress = 300;
@@ -281,7 +294,7 @@ TEST(KrylovOperator, IsThatOfTheElementsMatrices) {
     double scale = 0;
     for (double y : yu) scale = std::max(scale, std::abs(y));
     EXPECT_GT(scale, 1);
-    if (mixed) {  // the augmentation: B^T W times the second row
+    if (o.mixed) {  // the augmentation: B^T W times the second row
       std::vector<double> w(yp.size());
       for (std::size_t e = 0; e < w.size(); ++e) {
         EXPECT_NEAR(fp[e], yp[e], 1e-9 * scale) << e;
@@ -294,10 +307,8 @@ TEST(KrylovOperator, IsThatOfTheElementsMatrices) {
 }
 
 TEST(FineLevel, IsTheSymmetricPartInSinglePrecision) {
-  for (const bool mixed : {true, false}) {
-    LinearProblemOptions o;
-    o.cells = 3;
-    o.mixed = mixed;
+  for (LinearProblemOptions o : every_element()) {
+    SCOPED_TRACE(o.points);
     o.bulk_to_shear = 20;
     o.skew = 0;
     o.stress = 0;

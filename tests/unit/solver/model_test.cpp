@@ -4,22 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "core/error.hpp"
+#include "mesh/quadrature.hpp"
 #include "support/box_mesh.hpp"
 #include "support/elastic_law.hpp"
 
 namespace polyslip::solver {
 namespace {
 
-mesh::Snapshot box(const material::CrystalLaw& law, double distortion = 0) {
+mesh::Snapshot box(const material::CrystalLaw& law, double distortion = 0, int points = 4) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (rank != 0) return {};
   auto m = tests::box_mesh({4, 3, 3}, {2, 1.5, 1.2}, 2);
   if (distortion > 0) tests::distort(m, distortion);
-  return initial_snapshot(std::move(m),
-                          {core::Quaternion::Identity(), core::Quaternion::Identity()}, law);
+  return initial_snapshot(
+      std::move(m), {core::Quaternion::Identity(), core::Quaternion::Identity()}, law, points);
 }
 
 Boundary linear_motion(const core::Mat3& gradient) {
@@ -45,7 +47,7 @@ LoadingOptions one_step(double size) {
   return l;
 }
 
-class PatchTest : public ::testing::TestWithParam<const char*> {};
+class PatchTest : public ::testing::TestWithParam<std::tuple<const char*, int>> {};
 
 TEST_P(PatchTest, AConstantGradientGivesAConstantStress) {
   const double mu = 30, bulk = 300;
@@ -53,12 +55,13 @@ TEST_P(PatchTest, AConstantGradientGivesAConstantStress) {
   core::Mat3 g;
   g << 0.3, 0.2, -0.1, 0.4, -0.6, 0.15, 0.05, -0.3, 0.5;
   auto options = tight();
-  options.element = GetParam();
+  std::tie(options.element, options.quadrature_points) = GetParam();
+  const int points = options.quadrature_points;
   // The predictor must not know the answer.
   Boundary boundary = linear_motion(g);
   boundary.mean_gradient = [](double) -> core::Mat3 { return core::Mat3::Identity(); };
   const double size = 1e-3;
-  Model model(MPI_COMM_WORLD, box(law, 0.15), law, boundary, one_step(size), options, {});
+  Model model(MPI_COMM_WORLD, box(law, 0.15, points), law, boundary, one_step(size), options, {});
   const StepRecord r = model.step(size);
   EXPECT_GT(r.newton_iterations, 0);
   const mesh::Snapshot s = model.snapshot();
@@ -74,13 +77,15 @@ TEST_P(PatchTest, AConstantGradientGivesAConstantStress) {
                           expected(1, 2), expected(2, 0), expected(0, 1)};
   const auto* stress = s.find("cauchy_stress", mesh::Location::quadrature_point);
   ASSERT_NE(stress, nullptr);
-  ASSERT_EQ(stress->values.size(), s.mesh.tetrahedra.size() * 24);
+  ASSERT_EQ(stress->values.size(), s.mesh.tetrahedra.size() * 6 * static_cast<std::size_t>(points));
   for (std::size_t i = 0; i < stress->values.size(); ++i)
     ASSERT_NEAR(stress->values[i], want[i % 6], 1e-7 * bulk * size) << i;
   for (int c = 0; c < 6; ++c) EXPECT_NEAR(r.stress[c], want[c], 1e-7 * bulk * size);
 }
 
-INSTANTIATE_TEST_SUITE_P(Solver, PatchTest, ::testing::Values("mixed", "displacement"));
+INSTANTIATE_TEST_SUITE_P(Solver, PatchTest,
+                         ::testing::Combine(::testing::Values("mixed", "displacement"),
+                                            ::testing::ValuesIn(mesh::tet_quadrature_sizes)));
 
 TEST(Model, PlaneStrainOfAnElasticBlockBalances) {
   const double mu = 30, bulk = 100;
@@ -145,6 +150,17 @@ TEST(Model, AnInvertedElementCutsTheStep) {
   const StepRecord r = model.step(1.0);
   EXPECT_EQ(r.cuts, 2);
   EXPECT_DOUBLE_EQ(r.step_size, 0.25);
+}
+
+TEST(Model, AnotherNumberOfPointsThanTheSnapshotsIsRefusedOnEveryRank) {
+  const tests::ElasticLaw law(30, 100);
+  SolverOptions options;
+  options.quadrature_points = 15;
+  EXPECT_THROW(Model(MPI_COMM_WORLD, box(law), law, LoadingOptions{}, options, {}),
+               core::InternalError);
+  options.quadrature_points = 5;
+  EXPECT_THROW(Model(MPI_COMM_WORLD, box(law), law, LoadingOptions{}, options, {}),
+               core::InternalError);
 }
 
 TEST(Model, ASnapshotWithoutStateIsRefusedOnEveryRank) {

@@ -6,6 +6,7 @@
 
 #include "core/random.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/quadrature.hpp"
 
 namespace polyslip::solver {
 namespace {
@@ -30,51 +31,60 @@ ElementPositions moved(ElementPositions x, double amount) {
 /// The resistance and its forces at positions x, for a body whose points had their volumes at x0.
 struct Response {
   PointVolumeResistance resistance;
-  std::array<double, element_points> p{};
+  std::array<double, max_element_slots> p{};
   ElementGeometry geometry;
   ElementForces forces{};
 };
 
-Response response(const ElementPositions& x0, const ElementPositions& x, double kappa) {
+Response response(const PointRule& rule, const ElementPositions& x0, const ElementPositions& x,
+                  double kappa) {
   ElementGeometry before;
   Response r;
-  EXPECT_TRUE(element_geometry(x0, before));
-  EXPECT_TRUE(element_geometry(x, r.geometry));
-  std::array<double, element_points> ratio{};
-  for (int q = 0; q < element_points; ++q) ratio[q] = r.geometry.weights[q] / before.weights[q];
+  EXPECT_TRUE(element_geometry(rule, x0, before));
+  EXPECT_TRUE(element_geometry(rule, x, r.geometry));
+  std::array<double, max_element_points> ratio{};
+  for (int q = 0; q < rule.points; ++q) ratio[q] = r.geometry.weights[q] / before.weights[q];
   r.resistance = point_volume_resistance(r.geometry, ratio.data(), kappa);
   r.p = resistance_mean_stress(r.resistance, r.geometry);
-  const std::array<double, 6 * element_points> no_stress{};
-  element_forces(r.geometry, no_stress.data(), r.p, r.forces);
+  const std::array<double, 6 * max_element_slots> no_stress{};
+  element_forces(r.geometry, no_stress.data(), r.p.data(), r.forces);
   return r;
 }
 
 double energy(const PointVolumeResistance& resistance) {
   double u = 0;
-  for (int q = 0; q < element_points; ++q)
+  for (int q = 0; q < max_element_slots; ++q)
     u += resistance.kappa / 2 * resistance.reference[q] * resistance.s[q] * resistance.s[q];
   return u;
 }
 
-TEST(PointVolumes, AreFreeOfStressWhereAllPointsGrowAlike) {
+class PointVolumes : public ::testing::TestWithParam<int> {
+ protected:
+  const PointRule& rule() const { return point_rule(GetParam()); }
+};
+
+INSTANTIATE_TEST_SUITE_P(Points, PointVolumes, ::testing::ValuesIn(mesh::tet_quadrature_sizes));
+
+TEST_P(PointVolumes, AreFreeOfStressWhereAllPointsGrowAlike) {
   const ElementPositions x0 = reference_positions();
   ElementPositions x = x0;
   for (auto& node : x)
     for (double& c : node) c *= 1.1;
-  for (double p : response(x0, x, 500).p) EXPECT_NEAR(p, 0, 1e-11);
+  for (double p : response(rule(), x0, x, 500).p) EXPECT_NEAR(p, 0, 1e-11);
 }
 
-TEST(PointVolumes, ModulusIsAViscosityOverTheStepWithALimit) {
+TEST(PointVolumeModulus, IsAViscosityOverTheStepWithALimit) {
   EXPECT_NEAR(point_volume_modulus(27, 0.02, 27e3), 4 * 27 / 0.06, 1e-9);
   EXPECT_NEAR(point_volume_modulus(27, 0.04, 27e3), 4 * 27 / 0.12, 1e-9);
   EXPECT_NEAR(point_volume_modulus(27, 1e-4, 27e3), 0.2 * 27e3, 1e-9);
   EXPECT_EQ(point_volume_modulus(0, 1e-4, 27e3), 0);
 }
 
-TEST(PointVolumes, AddNoMeanStressToTheElement) {
-  const Response r = response(reference_positions(), moved(reference_positions(), 0.05), 500);
+TEST_P(PointVolumes, AddNoMeanStressToTheElement) {
+  const Response r =
+      response(rule(), reference_positions(), moved(reference_positions(), 0.05), 500);
   double mean = 0, size = 0;
-  for (int q = 0; q < element_points; ++q) {
+  for (int q = 0; q < r.geometry.points; ++q) {
     mean += r.geometry.weights[q] * r.p[q];
     size += std::abs(r.p[q]);
   }
@@ -82,29 +92,29 @@ TEST(PointVolumes, AddNoMeanStressToTheElement) {
   EXPECT_GT(size, 10);
 }
 
-TEST(PointVolumes, ForcesAreTheDerivativeOfTheEnergy) {
+TEST_P(PointVolumes, ForcesAreTheDerivativeOfTheEnergy) {
   const ElementPositions x0 = reference_positions(), x = moved(x0, 0.05);
-  const Response r = response(x0, x, 500);
+  const Response r = response(rule(), x0, x, 500);
   constexpr double step = 1e-6;
   for (int a = 0; a < element_nodes; ++a)
     for (int i = 0; i < 3; ++i) {
       ElementPositions plus = x, minus = x;
       plus[a][i] += step;
       minus[a][i] -= step;
-      const double slope = (energy(response(x0, plus, 500).resistance) -
-                            energy(response(x0, minus, 500).resistance)) /
+      const double slope = (energy(response(rule(), x0, plus, 500).resistance) -
+                            energy(response(rule(), x0, minus, 500).resistance)) /
                            (2 * step);
       EXPECT_NEAR(r.forces[a][i], slope, 1e-6);
     }
 }
 
-TEST(PointVolumes, TangentIsTheDerivativeOfTheForces) {
+TEST_P(PointVolumes, TangentIsTheDerivativeOfTheForces) {
   const ElementPositions x0 = reference_positions(), x = moved(x0, 0.05);
-  const Response r = response(x0, x, 500);
+  const Response r = response(rule(), x0, x, 500);
   ElementMatrix matrix;
-  const std::array<double, 6 * element_points> no_stress{};
-  const std::array<double, 54 * element_points> no_tangent{};
-  element_tangent(r.geometry, no_stress.data(), no_tangent.data(), r.p, 0, matrix);
+  const std::array<double, 6 * max_element_slots> no_stress{};
+  const std::array<double, 54 * max_element_slots> no_tangent{};
+  element_tangent(r.geometry, no_stress.data(), no_tangent.data(), r.p.data(), 0, matrix);
   add_resistance_tangent(r.resistance, r.geometry, matrix);
   constexpr double step = 1e-6;
   for (int b = 0; b < element_nodes; ++b)
@@ -112,7 +122,7 @@ TEST(PointVolumes, TangentIsTheDerivativeOfTheForces) {
       ElementPositions plus = x, minus = x;
       plus[b][k] += step;
       minus[b][k] -= step;
-      const Response up = response(x0, plus, 500), down = response(x0, minus, 500);
+      const Response up = response(rule(), x0, plus, 500), down = response(rule(), x0, minus, 500);
       for (int a = 0; a < element_nodes; ++a)
         for (int i = 0; i < 3; ++i)
           EXPECT_NEAR(matrix[a][i][b][k], (up.forces[a][i] - down.forces[a][i]) / (2 * step), 1e-5);

@@ -86,10 +86,33 @@ TEST(Consistency, ASuperposedRigidRotationOnlyTurnsTheFrame) {
   EXPECT_GT(largest, 10);
 }
 
-TEST(Consistency, ARestartContinuesBitForBit) {
+/// Both elements with each quadrature rule, or some of them.
+struct Element {
+  const char* name;
+  int points;
+};
+
+class EachElement : public ::testing::TestWithParam<Element> {
+ protected:
+  SolverOptions with_element(SolverOptions options) const {
+    options.element = GetParam().name;
+    options.quadrature_points = GetParam().points;
+    return options;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Elements, EachElement,
+                         ::testing::Values(Element{"mixed", 4}, Element{"mixed", 8},
+                                           Element{"displacement", 14},
+                                           Element{"displacement", 15}));
+
+TEST_P(EachElement, ARestartContinuesBitForBit) {
   const auto law = material::make_fcc_law({});
-  const SolverOptions options;
-  Model first(MPI_COMM_WORLD, tests::slab_box(MPI_COMM_WORLD, *law), *law, loading(), options, {});
+  const SolverOptions options = with_element({});
+  Model first(
+      MPI_COMM_WORLD,
+      tests::slab_box(MPI_COMM_WORLD, *law, core::Quaternion::Identity(), GetParam().points), *law,
+      loading(), options, {});
   for (int i = 0; i < 5; ++i) first.step(0.1);
   first.drop_setup();
   const mesh::Snapshot checkpoint = first.snapshot();
@@ -122,7 +145,9 @@ std::vector<mesh::Snapshot> run_on(MPI_Comm comm, const SolverOptions& options,
   LoadingOptions l = loading();
   l.fixed_increment = true;
   std::vector<mesh::Snapshot> out;
-  Model model(comm, tests::slab_box(comm, *law), *law, l, options, {});
+  Model model(comm,
+              tests::slab_box(comm, *law, core::Quaternion::Identity(), options.quadrature_points),
+              *law, l, options, {});
   for (double target : {0.01, 0.03}) {
     while (model.strain() < target) records.push_back(model.step(target));
     out.push_back(model.snapshot());
@@ -130,10 +155,10 @@ std::vector<mesh::Snapshot> run_on(MPI_Comm comm, const SolverOptions& options,
   return out;
 }
 
-TEST(Consistency, TheNumberOfRanksDoesNotMatter) {
+TEST_P(EachElement, TheNumberOfRanksDoesNotMatter) {
   std::vector<StepRecord> together, alone;
-  const auto many = run_on(MPI_COMM_WORLD, tight(), together);
-  const auto one = run_on(MPI_COMM_SELF, tight(), alone);
+  const auto many = run_on(MPI_COMM_WORLD, with_element(tight()), together);
+  const auto one = run_on(MPI_COMM_SELF, with_element(tight()), alone);
   ASSERT_EQ(together.size(), alone.size());
   for (std::size_t i = 0; i < alone.size(); ++i)
     for (std::size_t c = 0; c < 6; ++c)
