@@ -7,11 +7,12 @@ namespace polyslip::drivers {
 using core::Deck;
 
 material::MaterialOptions read_material(Deck& deck) {
-  auto t =
-      deck.table("material",
-                 "Elasto-viscoplastic FCC crystal with the 12 {111}<110> systems: slip rate = "
-                 "reference_slip_rate |tau/g|^(1/m) sign(tau), dg/dt = h0 (gs - g)/(gs - g0) "
-                 "times the sum of the slip rates' magnitudes. Defaults: the paper's aluminium.");
+  auto t = deck.table(
+      "material",
+      "Elasto-viscoplastic FCC crystal with the 12 {111}<110> systems: slip rate = "
+      "reference_slip_rate |tau/g|^(1/m) sign(tau), dg/dt = h0 ((gs - g)/(gs - "
+      "g0))^voce_exponent times the sum of the slip rates' magnitudes, in which those of "
+      "the other systems count latent_ratio. Defaults: the paper's aluminium.");
   material::MaterialOptions o;
   const auto modulus = [&](const char* key, double fallback, bool positive, const char* help) {
     return t.number(key, {.unit = "MPa",
@@ -30,7 +31,7 @@ material::MaterialOptions read_material(Deck& deck) {
                                                            .help = "Slip rate at tau = g."});
   o.rate_sensitivity = t.number("rate_sensitivity",
                                 {.fallback = o.rate_sensitivity,
-                                 .min = 0.001,
+                                 .min = 0.003,
                                  .max = 1,
                                  .help = "m: the exponent of |tau/g| is 1/m, so stress goes with "
                                          "the strain rate to the power m."});
@@ -42,6 +43,19 @@ material::MaterialOptions read_material(Deck& deck) {
                          .fallback = o.h0,
                          .min = 0,
                          .help = "Initial hardening modulus; 0: no hardening."});
+  o.voce_exponent = t.number("voce_exponent", {.fallback = o.voce_exponent,
+                                               .min = 0.1,
+                                               .max = 10,
+                                               .help = "Exponent of (gs - g)/(gs - g0)."});
+  o.latent_ratio = t.number(
+      "latent_ratio",
+      {.fallback = o.latent_ratio,
+       .min = 0,
+       .max = 5,
+       .help =
+           "Hardening of a system by slip on any other one, coplanar or not, over that by its "
+           "own slip. 1: all systems share one g; else each of the 12 has a g of its own, g0 at "
+           "first."});
   return o;
 }
 

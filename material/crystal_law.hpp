@@ -19,6 +19,8 @@ struct MaterialOptions {
   double reference_slip_rate = 1.0;                  ///< gammadot0 [1/s]
   double rate_sensitivity = 0.12;                    ///< m of |tau/g|^(1/m)
   double g0 = 8.0, gs = 12.0, h0 = 4.0;              ///< MPa
+  double voce_exponent = 1.0;                        ///< of (gs - g)/(gs - g0)
+  double latent_ratio = 1.0;  ///< hardening by another system over that by the system itself
 };
 
 /// not_finite: NaN or infinity in state or gradient. not_converged: det f <= 0 or no solution
@@ -40,7 +42,11 @@ struct PointBlocks {
   PointStatus* status = nullptr;  ///< [1]
 };
 
-/// A crystal law: deviatoric response of a cubic crystal (pressure is decoupled; design page 2).
+/// A crystal law: deviatoric response of a cubic crystal, whose pressure depends on the volume
+/// alone. A hexagonal crystal couples the two unless c11 + c12 = c13 + c33. Its law would read the
+/// volume from relative_gradient, whose determinant the cubic one drops, take the pressure of the
+/// element as a further input, and return the derivatives of stress and volume strain with respect
+/// to it; bulk_modulus() would then be that of Reuss, for scaling.
 class CrystalLaw {
  public:
   virtual ~CrystalLaw() = default;
@@ -57,9 +63,13 @@ class CrystalLaw {
   virtual void update(const PointBlocks& blocks) const = 0;
 };
 
-/// FCC crystal with 12 {111}<110> systems, power law (eq. 8) and Voce hardening (eq. 9).
-/// Layout: "orientation" (4: w x y z), "elastic_strain" (5, crystal frame), "g" (1, MPa),
-/// "slip" (1, sum over systems of |gamma|), "equivalent_strain" (1, integral of sqrt(2/3 Dp:Dp)).
+/// FCC crystal with 12 {111}<110> systems, power law (eq. 8) and Voce hardening (eq. 9):
+/// g'_a = h0 ((gs - g_a)/(gs - g0))^voce_exponent sum_b q_ab |gamma'_b|, q_aa = 1 and q_ab =
+/// latent_ratio for every other system b, coplanar ones too.
+/// Layout: "orientation" (4: w x y z), "elastic_strain" (5, crystal frame), "g" (MPa; 1 component,
+/// with a latent_ratio other than 1 the 12 g_a in the order of fcc_slip_systems(), all g0 at
+/// first), "slip" (1, sum over systems of |gamma|), "equivalent_strain" (1, integral of sqrt(2/3
+/// Dp:Dp)).
 /// Equations: docs/theory-material.md. Throws core::InputError if an option is out of its bounds.
 std::unique_ptr<CrystalLaw> make_fcc_law(const MaterialOptions& options);
 

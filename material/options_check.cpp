@@ -28,6 +28,10 @@ void check(const MaterialOptions& o) {
   require(o.g0 > 0, "g0", o.g0, "finite and positive (MPa)");
   require(o.gs >= o.g0, "gs", o.gs, "finite and not below g0 (MPa)");
   require(o.h0 >= 0, "h0", o.h0, "finite and not negative (MPa)");
+  require(o.voce_exponent >= 0.1 && o.voce_exponent <= 10, "voce_exponent", o.voce_exponent,
+          "between 0.1 and 10");
+  require(o.latent_ratio >= 0 && o.latent_ratio <= 5, "latent_ratio", o.latent_ratio,
+          "between 0 and 5");
 }
 
 }  // namespace polyslip::material

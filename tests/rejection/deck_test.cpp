@@ -155,6 +155,12 @@ const WrongDeck wrong_decks[] = {
     {"UnstableCrystal", "[material]\nc11 = 50e3\n",
      "deck.toml:2:7: [material] c11 = 50000 must be > c12 = 60900 (default): the crystal would be "
      "unstable in shear"},
+    {"VoceExponentOfNothing", "[material]\nvoce_exponent = 0\n",
+     "deck.toml:2:17: [material] voce_exponent = 0 must be >= 0.1 and <= 10"},
+    {"NegativeLatentRatio", "[material]\nlatent_ratio = -1\n",
+     "deck.toml:2:16: [material] latent_ratio = -1 must be >= 0 and <= 5"},
+    {"TooSharpAPowerLaw", "[material]\nrate_sensitivity = 0.001\n",
+     "deck.toml:2:20: [material] rate_sensitivity = 0.001 must be >= 0.003 and <= 1"},
     {"SaturationBelowStart", "[material]\ngs = 7.0\n",
      "deck.toml:2:6: [material] gs = 7 must be > g0 = 8 (default)"},
     {"MissingOrientationFile", "[orientations]\ndistribution = \"file\"\nfile = \"ori.txt\"\n",

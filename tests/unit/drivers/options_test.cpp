@@ -146,6 +146,8 @@ rate_sensitivity = 0.05
 g0 = 9
 gs = 13
 h0 = 5
+voce_exponent = 1.5
+latent_ratio = 1.4
 [loading]
 strain_rate = 0.01
 final_strain = 0.7
@@ -244,6 +246,8 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.material.g0, 9);
   EXPECT_EQ(o.material.gs, 13);
   EXPECT_EQ(o.material.h0, 5);
+  EXPECT_EQ(o.material.voce_exponent, 1.5);
+  EXPECT_EQ(o.material.latent_ratio, 1.4);
   EXPECT_EQ(o.loading.strain_rate, 0.01);
   EXPECT_EQ(o.loading.final_strain, 0.7);
   EXPECT_EQ(o.loading.max_strain_increment, 0.01);

@@ -18,6 +18,8 @@ inline std::size_t lane_index(int point, int component, int components) {
 /// Arrays of a call of CrystalLaw::update; a multiple of four points.
 struct Batch {
   int points, components;
+  int strength, strengths;  // first component of "g", how many: 1 or 12
+  int slip, equivalent_strain;
   double time_step = 0.01;
   std::vector<double> gradient, old, fresh, stress, tangent;
   std::vector<PointStatus> status;
@@ -25,6 +27,10 @@ struct Batch {
   Batch(const CrystalLaw& law, int n)
       : points(n),
         components(law.layout().size()),
+        strength(law.layout().offset("g")),
+        strengths(law.layout().offset("slip") - strength),
+        slip(strength + strengths),
+        equivalent_strain(law.layout().offset("equivalent_strain")),
         gradient(static_cast<std::size_t>(9 * n)),
         old(static_cast<std::size_t>(components * n)),
         fresh(old.size(), std::nan("")),
@@ -108,7 +114,9 @@ inline void randomise(Batch& batch, const CrystalLaw& law, const MaterialOptions
     const double level = p % 4 == 0 ? 0.0 : random.uniform(0.0, 1.3);
     const core::Vec5 e = random_elastic(random, o, level);
     for (int i = 0; i < 5; ++i) batch.old_state(p, 4 + i) = e[i];
-    batch.old_state(p, 9) = random.uniform(o.g0, o.gs);
+    for (int a = 0; a < batch.strengths; ++a) {
+      batch.old_state(p, batch.strength + a) = random.uniform(o.g0, o.gs);
+    }
     const double size = smallest * std::pow(largest / smallest, random.uniform());
     const core::Mat3 a = random_matrix(random);
     batch.set_gradient(p, core::Mat3::Identity() + size / a.norm() * a);
