@@ -34,6 +34,7 @@ class TessWriter {
     faces();
     polyhedra();
     domain();
+    if (!tess_.topology.periodic.empty()) periodicity();
     add("***end\n");
     out_.finish();
   }
@@ -205,6 +206,25 @@ class TessWriter {
     domain_vertices();
     domain_edges();
     domain_faces();
+  }
+
+  void periodicity() {
+    const auto& on = domain_.periodic;
+    add(" **periodicity\n  *general\n   {:d} {:d} {:d}\n  ", on[0], on[1], on[2]);
+    for (int k = 0; k < 3; ++k) number(on[k] ? domain_.size[k] : 0);
+    add("\n  *seed\n   0\n");
+    const auto& p = tess_.topology.periodic;
+    translates("*vertex", p.vertices, "");
+    translates("*edge", p.edges, " 1");
+    translates("*face", p.faces, " -1");
+  }
+
+  void translates(const char* key, const std::vector<PeriodicPair>& pairs,
+                  const char* orientation) {
+    add("  {}\n   {}\n", key, pairs.size());
+    for (const auto& [slave, master, shift] : pairs)
+      add("   {} {} {} {} {}{}\n", slave + 1, master + 1, shift[0], shift[1], shift[2],
+          orientation);
   }
 
   void domain_vertices() {

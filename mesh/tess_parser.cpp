@@ -80,11 +80,8 @@ class TessParser {
     const int dimension = in_.integer("the dimension");
     if (dimension != 3) in_.fail(fmt::format("dimension {}; only 3 is read", dimension));
     const std::string type(in_.word("the type of the tessellation"));
-    if (type == "periodic")
-      in_.fail(
-          "the tessellation is periodic, and its cells stick out of the domain; only tessellations "
-          "of the domain itself are read");
-    if (type != "standard") in_.fail(fmt::format("type '{}'; standard is read", type));
+    if (type != "standard" && type != "periodic")
+      in_.fail(fmt::format("type '{}'; standard and periodic are read", type));
   }
 
   void skip_block() {
@@ -261,9 +258,53 @@ class TessParser {
     while (in_.peek() != "***end") {
       const std::string word(in_.word("***end"));
       if (word == "**domain") read_domain();
-      if (word == "**periodicity" || word == "**periodic")
-        in_.fail("the tessellation is periodic; only others are read");
+      if (word == "**periodicity" || word == "**periodic") read_periodicity();
     }
+  }
+
+  void read_periodicity() {
+    TessContent::Translates p;
+    in_.expect("*general");
+    for (bool& on : p.directions) {
+      const int flag = in_.integer("whether a direction is periodic");
+      if (flag != 0 && flag != 1)
+        in_.fail(fmt::format("a direction's periodicity is {}, neither 0 nor 1", flag));
+      on = flag == 1;
+    }
+    p.distances = point("a periodic distance");
+    const auto& t = file_.tessellation.topology;
+    while (!in_.peek().starts_with("**") && !in_.peek().empty()) {
+      const std::string key(in_.word("a heading"));
+      if (key == "*vertex")
+        p.vertices = read_translates(p, static_cast<std::size_t>(t.vertex_count), false);
+      else if (key == "*edge")
+        p.edges = read_translates(p, t.edges.size(), true);
+      else if (key == "*face")
+        p.faces = read_translates(p, t.faces.size(), true);
+      else
+        skip_block();
+    }
+    if (p.directions != std::array<bool, 3>{false, false, false}) content_.periodic = std::move(p);
+  }
+
+  std::vector<TessContent::Translate> read_translates(const TessContent::Translates& p,
+                                                      std::size_t things, bool oriented) {
+    std::vector<TessContent::Translate> rows;
+    for (int n = in_.count("the number of secondaries"); n > 0; --n) {
+      TessContent::Translate row;
+      row.secondary = index(things, "a secondary");
+      row.primary = index(things, "a primary");
+      for (int k = 0; k < 3; ++k) {
+        row.shift[k] = in_.integer("a periodic shift");
+        if (row.shift[k] != 0 && !p.directions[k])
+          in_.fail(fmt::format("shift {} along a direction that is not periodic", row.shift[k]));
+      }
+      if (oriented) row.orientation = in_.integer("the orientation of a secondary");
+      if (row.orientation != 1 && row.orientation != -1)
+        in_.fail(fmt::format("an orientation is {}, neither 1 nor -1", row.orientation));
+      rows.push_back(row);
+    }
+    return rows;
   }
 
   /// Of the domain we need its faces.

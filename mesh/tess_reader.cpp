@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "mesh/face_fan.hpp"
 #include "mesh/tess_parser.hpp"
+#include "mesh/tess_translates.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -28,7 +29,10 @@ class Placement {
   TessellationFile take() {
     if (t_.vertices.empty()) fail("there are no vertices");
     measure();
-    if (!place_in_box()) place_in_polyhedron();
+    if (content_.periodic)
+      place_in_periodic_box();
+    else if (!place_in_box())
+      place_in_polyhedron();
     give_seeds();
     choose_masters();
     try {
@@ -72,6 +76,55 @@ class Placement {
         return b;
     }
     return -1;
+  }
+
+  /// Cells stick out of the box along its periodic directions, so **domain has to tell it.
+  void place_in_periodic_box() {
+    const auto& periodic = *content_.periodic;
+    std::array<bool, 6> told{};
+    for (const auto& d : content_.domain_faces)
+      for (int axis = 0; axis < 3 && d.type == "plane"; ++axis) {
+        const Plane plane = outward(d.plane);
+        const double along = plane.normal[axis];
+        if (std::abs(std::abs(along) - 1) > tolerance) continue;
+        (along > 0 ? high_ : low_)[axis] = plane.offset / along;
+        told[2 * axis + (along > 0 ? 1 : 0)] = true;
+      }
+    if (std::find(told.begin(), told.end(), false) != told.end())
+      fail("the tessellation is periodic, but **domain is not a box along the axes");
+    for (int k = 0; k < 3; ++k)
+      if (periodic.directions[k] &&
+          !(std::abs(high_[k] - low_[k] - periodic.distances[k]) <= near()))
+        fail(fmt::format("the periodic distance along {} is {}, the domain has {}", "xyz"[k],
+                         periodic.distances[k], high_[k] - low_[k]));
+    const std::vector<char> paired = faces_of_pairs(periodic);
+    for (int f = 0; f < face_count(); ++f)
+      if (outside(f) && !paired[f]) put_on_side(f);
+    const Vec3 size = high_ - low_;
+    move(scale_for(size.prod()));
+    t_.domain = box_domain(content_.file.scale * size);
+    t_.domain.periodic = periodic.directions;
+    t_.size = t_.domain.size;
+    const std::string fault = join_translates(periodic, tolerance * t_.size.minCoeff(), t_);
+    if (!fault.empty()) fail(fault);
+  }
+
+  std::vector<char> faces_of_pairs(const TessContent::Translates& periodic) const {
+    std::vector<char> paired(face_count(), false);
+    for (const auto& row : periodic.faces) paired[row.secondary] = paired[row.primary] = true;
+    return paired;
+  }
+
+  void put_on_side(int f) {
+    const int side = side_of(f);
+    if (side < 0 || content_.periodic->directions[side / 2])
+      fail(
+          fmt::format("face {} of cell {} has no cell beyond it, yet is in no periodic pair and on "
+                      "no side of the domain",
+                      f + 1, t_.topology.faces[f].cells[0] + 1));
+    t_.topology.faces[f].domain_face = side;
+    for (const int v : t_.topology.face_vertices(f))
+      t_.vertices[v][side / 2] = (side % 2 ? high_ : low_)[side / 2] + 0.0;
   }
 
   /// False, with nothing done, if a face on the surface is on no side of the bounding box.

@@ -33,8 +33,9 @@ struct TessellationFile {
 /// file's order. Faces keep their planes and the master points of their triangles: a vertex, or for
 /// 0 the mean of the vertices (Neper's centroid of the area moves the surface of a face little);
 /// where a face would be folded, the point that distorts it least. Cells without a seed get the
-/// mean of their vertices. check() passes. Periodic tessellations, whose cells stick out of the
-/// domain, are refused. Throws InputError "<path>:<line>: <what>", or "<path>: <what>" for what
+/// mean of their vertices. check() passes. Of a periodic tessellation, whose whole cells stick out
+/// of the domain, the box of **domain begins at the origin, and secondaries are put on their
+/// primaries' translates. Throws InputError "<path>:<line>: <what>", or "<path>: <what>" for what
 /// several lines have in common.
 TessellationFile read_tess(const std::string& path, LengthUnit unit = LengthUnit::grain);
 
