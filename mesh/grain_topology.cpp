@@ -3,40 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <tuple>
 
 #include "core/error.hpp"
+#include "mesh/surface_panels.hpp"
+#include "mesh/translated_nodes.hpp"
 
 namespace polyslip::mesh {
 namespace {
 
 using core::Vec3;
-
-/// Facets of a positive tetrahedron, outward by the right-hand rule.
-constexpr std::array<std::array<int, 3>, 4> outward_facets{
-    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
-
-/// Mid node of a tetrahedron between two of its corners.
-int mid_between(const std::array<int, 10>& t, int i, int j) {
-  for (int e = 0; e < 6; ++e) {
-    const auto& ends = tetrahedron_edges[e];
-    if ((ends[0] == i && ends[1] == j) || (ends[0] == j && ends[1] == i)) return t[4 + e];
-  }
-  throw core::InternalError("a tetrahedron has no edge between two of its corners");
-}
-
-struct Facet {
-  std::array<int, 3> key;    ///< corners, sorted
-  std::array<int, 6> nodes;  ///< outward
-  int cell;
-};
-
-/// A facet of a face: nodes out of `cell`, into `other` (-1 - b: face b of the domain).
-struct Panel {
-  std::array<int, 6> nodes;
-  int cell, other;
-};
 
 /// An edge of a panel.
 struct Side {
@@ -53,16 +31,18 @@ struct Segment {
 
 class TopologyFinder {
  public:
-  TopologyFinder(Mesh& mesh, const std::vector<int>& names) : mesh_(mesh), names_(names) {}
+  TopologyFinder(Mesh& mesh, const std::vector<int>& names)
+      : mesh_(mesh), names_(names), translated_(mesh) {}
 
   void find() {
-    find_panels();
-    put_on_domain();
+    take_panels();
     find_faces();
+    pair_faces();
     find_segments();
     find_vertices();
     find_edges();
     find_loops();
+    turn_slave_loops();
     check_grains();
   }
 
@@ -72,11 +52,15 @@ class TopologyFinder {
     throw core::InputError(fmt::format(text, std::forward<Args>(args)...));
   }
 
-  /// "grain 3", "between grains 3 and 7", "of grain 3 on x0"
-  std::string between(int cell, int other) const {
-    if (other < 0)
-      return fmt::format("of grain {} on {}", names_[cell], mesh_.domain.faces[-1 - other].name);
-    return fmt::format("between grains {} and {}", names_[cell], names_[other]);
+  /// "between grains 3 and 7", "of grain 3 on x0"
+  std::string between(int face) const {
+    const auto& f = mesh_.topology.faces[face];
+    if (f.domain_face >= 0)
+      return fmt::format("of grain {} on {}", names_[f.cells[0]],
+                         mesh_.domain.faces[f.domain_face].name);
+    if (f.cells[1] < 0)
+      return fmt::format("of grain {} across the periodic boundary", names_[f.cells[0]]);
+    return fmt::format("between grains {} and {}", names_[f.cells[0]], names_[f.cells[1]]);
   }
 
   std::string at(int node) const {
@@ -84,81 +68,10 @@ class TopologyFinder {
     return fmt::format("({:.6g}, {:.6g}, {:.6g})", x[0], x[1], x[2]);
   }
 
-  std::vector<Facet> sorted_facets() const {
-    std::vector<Facet> facets;
-    facets.reserve(4 * mesh_.tetrahedra.size());
-    for (int e = 0; e < mesh_.element_count(); ++e) {
-      const auto& t = mesh_.tetrahedra[e];
-      for (const auto& [i, j, k] : outward_facets) {
-        Facet f{
-            {t[i], t[j], t[k]},
-            {t[i], t[j], t[k], mid_between(t, i, j), mid_between(t, j, k), mid_between(t, k, i)},
-            mesh_.tetrahedron_cell[e]};
-        std::sort(f.key.begin(), f.key.end());
-        facets.push_back(f);
-      }
-    }
-    std::sort(facets.begin(), facets.end(), [](const Facet& a, const Facet& b) {
-      return std::tie(a.key, a.cell) < std::tie(b.key, b.cell);
-    });
-    return facets;
-  }
-
-  void find_panels() {
-    const auto facets = sorted_facets();
-    for (std::size_t i = 0; i < facets.size();) {
-      std::size_t end = i;
-      while (end < facets.size() && facets[end].key == facets[i].key) ++end;
-      const Facet& f = facets[i];
-      if (end - i > 2)
-        fail("{} elements share a facet of grain {} at {}", end - i, names_[f.cell],
-             at(f.nodes[0]));
-      if (end - i == 1)
-        panels_.push_back({f.nodes, f.cell, -1 - domain_face(f)});
-      else if (facets[i + 1].cell != f.cell)
-        panels_.push_back({f.nodes, f.cell, facets[i + 1].cell});
-      i = end;
-    }
-    std::stable_sort(panels_.begin(), panels_.end(), [](const Panel& a, const Panel& b) {
-      return std::tie(a.cell, a.other) < std::tie(b.cell, b.other);
-    });
-  }
-
-  /// How far the nodes of a facet are from a face of the domain, at most.
-  double distance(const Facet& f, const Plane& plane) const {
-    double most = 0;
-    for (const int n : f.nodes)
-      if (n >= 0) most = std::max(most, std::abs(plane.normal.dot(mesh_.nodes[n]) - plane.offset));
-    return most;
-  }
-
-  /// The face of the domain that a facet without a neighbour lies on; its nodes are noted to lie
-  /// there.
-  int domain_face(const Facet& f) {
-    const auto& faces = mesh_.domain.faces;
-    int best = 0;
-    for (int d = 1; d < static_cast<int>(faces.size()); ++d)
-      if (distance(f, faces[d].plane) < distance(f, faces[best].plane)) best = d;
-    if (!(distance(f, faces[best].plane) <= 1e-6 * mesh_.size.minCoeff()))
-      fail(
-          "grain {} has a free facet at {} that lies on no side of the bounding box: the mesh has "
-          "a "
-          "hole or a crack, or its domain is neither a box along the axes nor another convex body",
-          names_[f.cell], at(f.nodes[0]));
-    for (const int n : f.nodes)
-      if (n >= 0) on_domain_.push_back({n, best});
-    return best;
-  }
-
-  void put_on_domain() {
-    const DomainFaceLists lists(mesh_.nodes.size(), std::move(on_domain_));
-    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
-      if (lists[n].empty()) continue;
-      std::vector<Plane> planes;
-      for (const int d : lists[n]) planes.push_back(mesh_.domain.faces[d].plane);
-      put_on_planes(planes, mesh_.nodes[n]);
-      mesh_.nodes[n] = mesh_.nodes[n].cwiseMax(0.0).cwiseMin(mesh_.size);
-    }
+  void take_panels() {
+    SurfacePanels found = find_panels(mesh_, names_, translated_);
+    panels_ = std::move(found.panels);
+    twins_ = found.twins;
   }
 
   /// Sides of all panels, those of the same mesh edge next to each other.
@@ -218,7 +131,7 @@ class TopologyFinder {
         face_of_[r] = static_cast<int>(t.faces.size());
         TopologyFace face;
         face.cells = {panel.cell, std::max(panel.other, -1)};
-        face.domain_face = panel.other < 0 ? -1 - panel.other : -1;
+        face.domain_face = panel.other < 0 && panel.twins < 0 ? -1 - panel.other : -1;
         t.cell_faces[panel.cell].push_back(face_of_[r]);
         if (panel.other >= 0) t.cell_faces[panel.other].push_back(face_of_[r]);
         t.faces.push_back(face);
@@ -233,6 +146,66 @@ class TopologyFinder {
       mesh_.triangles.push_back(panels_[p].nodes);
       mesh_.triangle_face.push_back(face_of_[p]);
     }
+  }
+
+  /// Pairs of faces, by their panels. Triangles of slaves are put in the order of their masters',
+  /// each turned about from the same node.
+  void pair_faces() {
+    if (twins_ == 0) return;
+    std::vector<std::array<int, 2>> pairs(twins_, {-1, -1});  // panels of each: master's, slave's
+    for (std::size_t p = 0; p < panels_.size(); ++p)
+      if (panels_[p].twins >= 0) {
+        auto& [master, slave] = pairs[panels_[p].twins];
+        (master < 0 ? master : slave) = static_cast<int>(p);
+      }
+    std::vector<std::array<int, 2>> by_faces;  // slave, pair
+    for (int i = 0; i < twins_; ++i) {
+      auto& [master, slave] = pairs[i];
+      if (face_of_[slave] < face_of_[master]) std::swap(master, slave);
+      by_faces.push_back({face_of_[slave], i});
+    }
+    std::sort(by_faces.begin(), by_faces.end());
+    auto& list = mesh_.topology.periodic.faces;
+    for (const auto& [face, i] : by_faces) {
+      const auto [master, slave] = pairs[i];
+      const PeriodicPair pair{face, face_of_[master], panels_[master].shift};
+      if (list.empty() || list.back().slave != face) list.push_back(pair);
+      if (list.back().master != pair.master || list.back().shift != pair.shift)
+        fail("the periodic face {} has not one translate", between(face));
+    }
+    order_slave_triangles(pairs);
+  }
+
+  void order_slave_triangles(const std::vector<std::array<int, 2>>& pairs) {
+    std::vector<int> next(mesh_.topology.faces.size(), 0);  // triangle of each face
+    for (std::size_t t = mesh_.triangles.size(); t-- > 0;)
+      next[mesh_.triangle_face[t]] = static_cast<int>(t);
+    std::vector<int> slave_of(mesh_.topology.faces.size(), -1);
+    for (const auto& pair : mesh_.topology.periodic.faces) slave_of[pair.master] = pair.slave;
+    // Panels are sorted as their triangles are within a face.
+    for (const Panel& panel : panels_) {
+      if (panel.twins < 0 || &panel != &panels_[pairs[panel.twins][0]]) continue;
+      const Panel& slave = panels_[pairs[panel.twins][1]];
+      mesh_.triangles[next[face_of_[pairs[panel.twins][1]]]++] = turned_about(panel, slave);
+    }
+  }
+
+  /// The nodes of a slave panel in the order in which the master's are, turned about.
+  std::array<int, 6> turned_about(const Panel& master, const Panel& slave) const {
+    constexpr std::array<int, 6> turned{0, 2, 1, 5, 4, 3};
+    for (int first = 0; first < 3; ++first) {
+      std::array<int, 6> nodes{};
+      bool same = true;
+      for (int i = 0; i < 6; ++i) {
+        nodes[i] = slave.nodes[i < 3 ? (first + i) % 3 : 3 + (first + i) % 3];
+        const int of_master = master.nodes[turned[i]];
+        same =
+            same && (nodes[i] < 0 || translated_.is_translate(nodes[i], of_master, master.shift));
+      }
+      if (same) return nodes;
+    }
+    fail("a periodic facet of grain {} at {} is no translate of its other side, node for node",
+         names_[slave.cell], at(slave.nodes[0]));
   }
 
   void find_segments() {
@@ -252,27 +225,72 @@ class TopologyFinder {
 
   void find_vertices() {
     vertex_at_.assign(mesh_.nodes.size(), -1);
+    // One that a single grain sees as a node of an edge may be a vertex for others elsewhere.
+    std::vector<char> is_vertex(mesh_.nodes.size(), false);
     for (int n = 0; n < mesh_.node_count(); ++n) {
       const auto& here = segments_at_[n];
       const bool inside = here.empty() || (here.size() == 2 &&
                                            segments_[here[0]].faces == segments_[here[1]].faces);
-      if (inside) continue;
+      if (!inside) is_vertex[translated_.place(n).master] = true;
+    }
+    for (int n = 0; n < mesh_.node_count(); ++n) {
+      const auto& [master, shift] = translated_.place(n);
+      if (!is_vertex[master]) continue;
       vertex_at_[n] = mesh_.topology.vertex_count++;
       mesh_.vertex_nodes.push_back(n);
+      if (master != n)
+        mesh_.topology.periodic.vertices.push_back({vertex_at_[n], vertex_at_[master], shift});
     }
   }
 
   void find_edges() {
     for (const int n : mesh_.vertex_nodes)
       for (const int s : segments_at_[n])
-        if (segments_[s].edge < 0) follow(n, s);
+        if (segments_[s].edge < 0) find_edge(n, s);
     for (const Segment& s : segments_)
-      if (s.edge < 0) {
-        const auto& face = mesh_.topology.faces[s.faces[0]];
+      if (s.edge < 0)
         fail("the edge of the face {} at {} is closed and has no vertex; such grains are not read",
-             between(face.cells[0], face.domain_face >= 0 ? -1 - face.domain_face : face.cells[1]),
-             at(s.a));
-      }
+             between(s.faces[0]), at(s.a));
+  }
+
+  /// The edge that leaves a vertex along a segment; one that is the translate of another, and its
+  /// lines, run as that one.
+  void find_edge(int node, int segment) {
+    const auto found = masters_.find(key_at(node, segment));
+    if (found != masters_.end() && found->second.backwards)
+      std::tie(node, segment) = other_end(node, segment);
+    const int edge = static_cast<int>(mesh_.topology.edges.size());
+    const int first_line = static_cast<int>(mesh_.lines.size());
+    follow(node, segment);
+    if (found != masters_.end()) {
+      const auto& [master, start, backwards] = found->second;
+      mesh_.topology.periodic.edges.push_back(
+          {edge, master, translated_.place(node).shift - translated_.place(start).shift});
+      return;
+    }
+    const auto &first = mesh_.lines[first_line], &last = mesh_.lines.back();
+    masters_[translated_.directed(first[0], first[1])] = {edge, node, false};
+    masters_.try_emplace(translated_.directed(last[1], last[0]), MasterEdge{edge, node, true});
+  }
+
+  std::tuple<int, int, Shift> key_at(int node, int segment) const {
+    const Segment& s = segments_[segment];
+    return translated_.directed(node, s.a == node ? s.b : s.a);
+  }
+
+  int next_segment(int node, int segment) const {
+    const auto& here = segments_at_[node];
+    return here[0] == segment ? here[1] : here[0];
+  }
+
+  /// Where the edge that leaves a vertex along a segment ends: vertex, and segment there.
+  std::pair<int, int> other_end(int node, int segment) const {
+    for (;;) {
+      const Segment& s = segments_[segment];
+      node = s.a == node ? s.b : s.a;
+      if (vertex_at_[node] >= 0) return {node, segment};
+      segment = next_segment(node, segment);
+    }
   }
 
   /// The edge that leaves a vertex along a segment, to the next vertex.
@@ -289,8 +307,7 @@ class TopologyFinder {
       mesh_.line_edge.push_back(edge);
       node = next;
       if (vertex_at_[node] >= 0) break;
-      const auto& here = segments_at_[node];
-      segment = here[0] == segment ? here[1] : here[0];
+      segment = next_segment(node, segment);
     }
     if (vertex_at_[node] == from) {
       const auto& face = t.faces[segments_[segment].faces[0]];
@@ -334,8 +351,7 @@ class TopologyFinder {
   void find_loop(int f, std::vector<Use> uses) {
     auto& t = mesh_.topology;
     auto& face = t.faces[f];
-    const std::string name =
-        between(face.cells[0], face.domain_face >= 0 ? -1 - face.domain_face : face.cells[1]);
+    const std::string name = between(f);
     if (uses.empty()) fail("the face {} is closed: a grain inside another is not read", name);
     std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.edge < b.edge; });
     const auto start = [&](const Use& u) { return t.edges[u.edge].vertices[u.forward ? 0 : 1]; };
@@ -359,6 +375,25 @@ class TopologyFinder {
     } while (now != 0 && face.edges.size() < uses.size());
     if (now != 0 || face.edges.size() != uses.size())
       fail("the face {} has a hole or is pinched: its boundary is more than one loop", name);
+  }
+
+  /// The loop of a slave begins where its master's does.
+  void turn_slave_loops() {
+    auto& t = mesh_.topology;
+    const auto node = [&](int v) { return mesh_.vertex_nodes[v]; };
+    for (const auto& pair : t.periodic.faces) {
+      const int start = node(t.face_vertices(pair.master).front());
+      const auto loop = t.face_vertices(pair.slave);
+      const auto first = std::find_if(loop.begin(), loop.end(), [&](int v) {
+        return translated_.is_translate(node(v), start, pair.shift);
+      });
+      if (first == loop.end())
+        fail("the periodic face {} has other vertices than its translate", between(pair.slave));
+      auto& face = t.faces[pair.slave];
+      const auto by = first - loop.begin();
+      std::rotate(face.edges.begin(), face.edges.begin() + by, face.edges.end());
+      std::rotate(face.forward.begin(), face.forward.begin() + by, face.forward.end());
+    }
   }
 
   /// Each edge of a grain lies in two of its faces, and its surface is a sphere.
@@ -390,15 +425,23 @@ class TopologyFinder {
     }
   }
 
+  /// An edge of which others are translates; or the same seen from its end.
+  struct MasterEdge {
+    int edge = -1, start = -1;
+    bool backwards = false;
+  };
+
   Mesh& mesh_;
   const std::vector<int>& names_;
+  TranslatedNodes translated_;
+  std::map<std::tuple<int, int, Shift>, MasterEdge> masters_;
+  int twins_ = 0;  ///< pairs of periodic panels
   std::vector<Panel> panels_;
   std::vector<Side> sides_;
   std::vector<int> parent_, face_of_;  ///< of panels
   std::vector<Segment> segments_;
   std::vector<std::vector<int>> segments_at_;  ///< of nodes
   std::vector<int> vertex_at_;                 ///< of nodes; -1: none
-  std::vector<std::array<int, 2>> on_domain_;  ///< nodes and the faces they lie on
 };
 
 }  // namespace

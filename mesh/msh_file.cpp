@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/file.hpp"
+#include "mesh/msh_periodic.hpp"
 #include "mesh/msh_writer.hpp"
 #include "mesh/orientation_block.hpp"
 
@@ -28,7 +29,8 @@ class MshWriter {
         surfaces_(mesh.domain.surface_of_face()),
         out_(path) {
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-      if (domain_face(i) >= 0) surface_.push_back(static_cast<int>(i));
+      if (mesh.topology.faces[mesh.triangle_face[i]].cells[1] < 0)
+        surface_.push_back(static_cast<int>(i));
   }
 
   void write() {
@@ -43,6 +45,7 @@ class MshWriter {
     if (format_.newest) entities();
     nodes();
     format_.newest ? elements_41() : elements_22();
+    if (!mesh_.topology.periodic.empty()) periodic();
     if (!notes_.orientations.empty()) put_orientations();
     out_.finish();
   }
@@ -51,7 +54,11 @@ class MshWriter {
   int domain_face(std::size_t triangle) const {
     return mesh_.topology.faces[mesh_.triangle_face[triangle]].domain_face;
   }
-  int physical_surface(int triangle) const { return surfaces_[domain_face(triangle)] + 1; }
+  /// 0, none, for periodic faces.
+  int physical_surface(int triangle) const {
+    const int face = domain_face(triangle);
+    return face < 0 ? 0 : surfaces_[face] + 1;
+  }
 
   template <class T>
   void raw(T value) {
@@ -109,8 +116,8 @@ class MshWriter {
     number(tag);
     for (int i = 0; i < 3; ++i) real(box.min()[i]);
     for (int i = 0; i < 3; ++i) real(box.max()[i]);
-    wide(1);
-    number(physical);
+    wide(physical > 0 ? 1 : 0);
+    if (physical > 0) number(physical);
     wide(0);
     end();
   }
@@ -263,6 +270,50 @@ class MshWriter {
     close("$EndElements");
   }
 
+  /// Format 2.2 has this section as text in binary files too.
+  void periodic() {
+    const auto links = periodic_links(mesh_);
+    out_.put("$Periodic\n");
+    if (!format_.newest) return periodic_22(links);
+    wide(links.size());
+    end();
+    for (const auto& link : links) {
+      for (const int n : {2, link.slave + 1, link.master + 1}) number(n);
+      end();
+      wide(16);
+      for (const double a : affine(link.translation)) real(a);
+      end();
+      wide(link.nodes.size());
+      end();
+      for (const auto& [slave, master] : link.nodes) {
+        wide(static_cast<std::size_t>(slave) + 1);
+        wide(static_cast<std::size_t>(master) + 1);
+        end();
+      }
+    }
+    close("$EndPeriodic");
+  }
+
+  void periodic_22(const std::vector<PeriodicLink>& links) {
+    out_.put(fmt::format("{}\n", links.size()));
+    for (const auto& link : links) {
+      out_.put(fmt::format("2 {} {}\nAffine", link.slave + 1, link.master + 1));
+      for (const double a : affine(link.translation)) {
+        out_.put(' ');
+        out_.put(a);
+      }
+      out_.put(fmt::format("\n{}\n", link.nodes.size()));
+      for (const auto& [slave, master] : link.nodes)
+        out_.put(fmt::format("{} {}\n", slave + 1, master + 1));
+    }
+    out_.put("$EndPeriodic\n");
+  }
+
+  /// The matrix, row by row, of the motion from a master to its slave.
+  static std::array<double, 16> affine(const core::Vec3& t) {
+    return {1, 0, 0, t[0], 0, 1, 0, t[1], 0, 0, 1, t[2], 0, 0, 0, 1};
+  }
+
   void put_orientations() {
     const auto& orientations = notes_.orientations;
     out_.put(fmt::format("$ElsetOrientations\n{} {}\n", orientations.size(), written_descriptor));
@@ -280,7 +331,7 @@ class MshWriter {
   std::vector<int> surfaces_;  ///< [domain faces] physical surface, from 0
   core::FileWriter out_;
   bool inside_row_ = false;
-  std::vector<int> surface_;  ///< triangles of the domain's surface
+  std::vector<int> surface_;  ///< triangles with a grain on one side
 };
 
 }  // namespace

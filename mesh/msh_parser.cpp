@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "mesh/msh_numbers.hpp"
@@ -74,6 +75,8 @@ class MshParser {
       once(elements_seen_, "$Elements"), newest_ ? read_elements_41() : read_elements_22();
     else if (heading == "$Entities" && newest_)
       read_entities();
+    else if (heading == "$Periodic")
+      newest_ ? read_periodic_41() : read_periodic_22();
     else if (heading == "$PhysicalNames")
       read_names();
     else if (heading == "$ElsetOrientations")
@@ -291,6 +294,62 @@ class MshParser {
       content_.names[{dimension, id}] = std::string(rest.substr(begin + 1, end - begin - 1));
     }
     in_.expect("$EndPhysicalNames");
+  }
+
+  /// Text in binary files too.
+  void read_periodic_22() {
+    const int count = in_.count("the number of periodic entities");
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < 3; ++k) in_.integer("a periodic entity");
+      MshContent::Link link;
+      if (in_.peek() == "Affine") {
+        in_.expect("Affine");
+        link.translation = read_affine([&] { return in_.number("a number of an affine motion"); });
+      }
+      const int nodes = in_.count("the number of periodic nodes");
+      for (int n = 0; n < nodes; ++n) {
+        const int slave = in_.integer("a periodic node");
+        link.nodes.push_back({slave, in_.integer("the node of which one is a copy")});
+      }
+      content_.links.push_back(std::move(link));
+    }
+    in_.expect("$EndPeriodic");
+  }
+
+  void read_periodic_41() {
+    numbers_.end_line();
+    const int count = numbers_.wide_count("the number of periodic entities", 28);
+    for (int i = 0; i < count; ++i) {
+      for (int k = 0; k < 3; ++k) numbers_.integer("a periodic entity");
+      MshContent::Link link;
+      const int affine = numbers_.wide_count("the count of numbers of an affine motion", 8);
+      if (affine != 0 && affine != 16)
+        in_.fail(fmt::format("an affine motion has {} numbers, neither 0 nor 16", affine));
+      if (affine == 16)
+        link.translation =
+            read_affine([&] { return numbers_.number("a number of an affine motion"); });
+      const int nodes = numbers_.wide_count("the number of periodic nodes", 16);
+      for (int n = 0; n < nodes; ++n) {
+        const int slave = numbers_.wide("a periodic node");
+        link.nodes.push_back({slave, numbers_.wide("the node of which one is a copy")});
+      }
+      content_.links.push_back(std::move(link));
+    }
+    in_.expect("$EndPeriodic");
+  }
+
+  template <class Number>
+  Vec3 read_affine(const Number& number) {
+    Vec3 translation;
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) {
+        const double value = number();
+        if (row < 3 && column == 3)
+          translation[row] = value;
+        else if (!(std::abs(value - (row == column ? 1 : 0)) <= 1e-9))
+          in_.fail("a periodic motion is no translation; only translations are read");
+      }
+    return translation;
   }
 
   void read_orientations() {

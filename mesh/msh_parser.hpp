@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,12 @@ struct MshContent {
     int physical = 0;
   };
 
+  /// A pair of entities in $Periodic.
+  struct Link {
+    std::optional<core::Vec3> translation;   ///< of its affine motion, where it has one
+    std::vector<std::pair<int, int>> nodes;  ///< of the slave, of the master
+  };
+
   int order = 1;
   std::vector<std::pair<int, int>> node_ids;  ///< id and place in `positions`, sorted
   std::vector<core::Vec3> positions;
@@ -31,6 +38,7 @@ struct MshContent {
   std::map<std::pair<int, int>, std::string> names;  ///< of dimension and physical id
   std::map<int, core::Quaternion> orientations;      ///< of grains ($ElsetOrientations)
   std::map<int, int> groups;                         ///< of grains ($Groups)
+  std::vector<Link> links;                           ///< of any dimension
 };
 
 /// Parses formats 2.2 and 4.1, ASCII and binary of either byte order, `.gz` too. Sections that are

@@ -11,6 +11,7 @@
 #include "mesh/grain_topology.hpp"
 #include "mesh/mesh_domain.hpp"
 #include "mesh/msh_parser.hpp"
+#include "mesh/msh_periodic.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -125,7 +126,9 @@ class MshReader {
     }
     if (!((high - low).minCoeff() > 0)) fail("the box of the nodes has no volume");
     check_elements();
-    if (const auto walls = find_walls(mesh, surfaces()))
+    if (!content_.links.empty())
+      place_in_periodic_box(low, high);
+    else if (const auto walls = find_walls(mesh, surfaces()))
       place_in_polyhedron(*walls, low, high);
     else
       place_in_box(low, high);
@@ -134,6 +137,48 @@ class MshReader {
   double scale_for(double volume) const {
     const double ratio = result_.mesh.topology.cell_count() / volume;
     return unit_ == LengthUnit::file || std::abs(ratio - 1) < 1e-9 ? 1.0 : std::cbrt(ratio);
+  }
+
+  /// Links with the numbers that nodes have in the mesh; where a link tells no translation, that of
+  /// its nodes.
+  std::vector<PeriodicLink> links() const {
+    std::vector<PeriodicLink> links;
+    for (const auto& row : content_.links) {
+      PeriodicLink link;
+      Vec3 sum = Vec3::Zero();
+      for (const auto& [slave, master] : row.nodes) {
+        const auto from = find_node(master), to = find_node(slave);
+        if (!from || !to)
+          fail(fmt::format("$Periodic has node {}, which is not in $Nodes", from ? slave : master));
+        if (numbers_[*from] < 0 || numbers_[*to] < 0) continue;  // of no tetrahedron
+        link.nodes.push_back({numbers_[*to], numbers_[*from]});
+        sum += content_.positions[*to] - content_.positions[*from];
+      }
+      if (link.nodes.empty()) continue;
+      link.translation = row.translation.value_or(sum / static_cast<double>(link.nodes.size()));
+      links.push_back(std::move(link));
+    }
+    return links;
+  }
+
+  /// Grains stick out of the box along its periodic directions, where it may begin anywhere: at the
+  /// file's origin.
+  void place_in_periodic_box(Vec3 low, Vec3 high) {
+    Mesh& mesh = result_.mesh;
+    PeriodicBox box;
+    std::string fault;
+    const double near = 1e-6 * (high - low).minCoeff();
+    mesh.periodic_nodes = join_links(links(), mesh.nodes, near, box, fault);
+    if (!fault.empty()) fail("$Periodic: " + fault);
+    for (int k = 0; k < 3; ++k)
+      if (box.directions[k]) low[k] = 0, high[k] = box.periods[k];
+    const Vec3 size = high - low;
+    const double scale = scale_for(size.prod());
+    mesh.domain = box_domain(scale * size);
+    mesh.domain.periodic = box.directions;
+    move(low, high, scale);
+    for (const auto& pair : mesh.periodic_nodes)
+      mesh.nodes[pair.slave] = translated(mesh.nodes[pair.master], pair.shift, mesh.size);
   }
 
   void place_in_box(const Vec3& low, const Vec3& high) {
