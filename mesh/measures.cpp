@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "mesh/face_fan.hpp"
 #include "mesh/minimum.hpp"
@@ -14,19 +15,48 @@ namespace {
 
 using core::Vec3;
 
+/// Faces and edges, translates beside their masters.
+void add_entities(const Topology& t, Measures& m) {
+  std::vector<int> master(t.edges.size());
+  std::iota(master.begin(), master.end(), 0);
+  for (const auto& pair : t.periodic.edges) {
+    master[pair.slave] = pair.master;
+    m.edges[pair.slave].is_translate = true;
+  }
+  for (const auto& pair : t.periodic.faces) m.faces[pair.slave].is_translate = true;
+  for (std::size_t f = 0; f < t.faces.size(); ++f) {
+    m.faces[f].cells = t.faces[f].cells;
+    m.faces[f].domain_face = t.faces[f].domain_face;
+    m.faces[f].edges = static_cast<int>(t.faces[f].edges.size());
+    for (const int e : t.faces[f].edges)
+      if (!m.faces[f].is_translate) ++m.edges[master[e]].faces;
+  }
+  for (const auto& pair : t.periodic.faces) {
+    m.faces[pair.master].cells[1] = t.faces[pair.slave].cells[0];
+    m.faces[pair.slave].cells[1] = t.faces[pair.master].cells[0];
+  }
+  for (std::size_t e = 0; e < t.edges.size(); ++e) {
+    m.edges[e].vertices = t.edges[e].vertices;
+    m.edges[e].faces = m.edges[master[e]].faces;
+  }
+}
+
+/// A face or edge is inner if one of its translates is.
+template <class Entity>
+void share_inner(const std::vector<PeriodicPair>& pairs, std::vector<Entity>& all) {
+  for (const auto& pair : pairs)
+    if (all[pair.slave].inner) all[pair.master].inner = true;
+  for (const auto& pair : pairs) all[pair.slave].inner = all[pair.master].inner;
+}
+
 /// What the topology says; sizes are left to the caller.
 Measures topological(const Topology& t) {
   Measures m;
   m.grains.resize(t.cell_faces.size());
   m.faces.resize(t.faces.size());
   m.edges.resize(t.edges.size());
-  for (std::size_t f = 0; f < t.faces.size(); ++f) {
-    m.faces[f].cells = t.faces[f].cells;
-    m.faces[f].domain_face = t.faces[f].domain_face;
-    m.faces[f].edges = static_cast<int>(t.faces[f].edges.size());
-    for (const int e : t.faces[f].edges) ++m.edges[e].faces;
-  }
-  for (std::size_t e = 0; e < t.edges.size(); ++e) m.edges[e].vertices = t.edges[e].vertices;
+  m.vertices = t.vertex_count - static_cast<int>(t.periodic.vertices.size());
+  add_entities(t, m);
   for (std::size_t c = 0; c < t.cell_faces.size(); ++c) {
     GrainMeasures& grain = m.grains[c];
     grain.inner = true;
@@ -37,7 +67,7 @@ Measures topological(const Topology& t) {
       sides += face.edges;
       if (face.domain_face >= 0) grain.inner = false;
       const int other = face.cells[0] == static_cast<int>(c) ? face.cells[1] : face.cells[0];
-      if (other >= 0) others.push_back(other);
+      if (other >= 0 && other != static_cast<int>(c)) others.push_back(other);
     }
     std::sort(others.begin(), others.end());
     grain.neighbours = static_cast<int>(std::unique(others.begin(), others.end()) - others.begin());
@@ -50,6 +80,8 @@ Measures topological(const Topology& t) {
       for (const int e : t.faces[f].edges) m.edges[e].inner = true;
     }
   }
+  share_inner(t.periodic.faces, m.faces);
+  share_inner(t.periodic.edges, m.edges);
   return m;
 }
 

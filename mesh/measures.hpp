@@ -27,9 +27,11 @@ struct GrainMeasures {
 };
 
 struct FaceMeasures {
+  /// Of a periodic face the cell beyond it is that at its translate.
   std::array<int, 2> cells{-1, -1};
-  int domain_face = -1;  ///< as in TopologyFace
-  bool inner = false;    ///< belongs to an inner grain
+  bool is_translate = false;  ///< a slave of a periodic pair: its master stands for both
+  int domain_face = -1;       ///< as in TopologyFace
+  bool inner = false;         ///< belongs to an inner grain
   int edges = 0;
   double area = 0;
   /// Largest angle [degrees] between the normals of two triangles of the face: its interpolation
@@ -44,8 +46,9 @@ struct FaceMeasures {
 
 struct EdgeMeasures {
   std::array<int, 2> vertices{-1, -1};
-  bool inner = false;  ///< belongs to an inner grain
-  int faces = 0;       ///< that meet at it
+  bool is_translate = false;  ///< as of a face
+  bool inner = false;         ///< belongs to an inner grain
+  int faces = 0;              ///< that meet at it, or at its translates
   double length = 0;
 };
 
@@ -53,6 +56,7 @@ struct Measures {
   std::vector<GrainMeasures> grains;  ///< [cell]
   std::vector<FaceMeasures> faces;    ///< [face]
   std::vector<EdgeMeasures> edges;    ///< [edge]
+  int vertices = 0;                   ///< translates counted once
 };
 
 /// Of the straight edges, the interpolation triangles and the cells that they bound.

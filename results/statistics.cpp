@@ -12,7 +12,6 @@
 namespace polyslip::results {
 namespace {
 
-using mesh::EdgeMeasures;
 using mesh::FaceMeasures;
 using mesh::GrainMeasures;
 using mesh::GrainMeshMeasures;
@@ -100,25 +99,32 @@ Quantity make(const Kind& kind, std::vector<Number> values) {
   return q;
 }
 
+template <class Value>
+std::vector<double> of_grains(const Statistics& s, Value value) {
+  std::vector<double> values;
+  for (const GrainMeasures& grain : s.measures.grains)
+    if (!s.options.inner || grain.inner) values.push_back(static_cast<double>(value(grain)));
+  return values;
+}
+
+/// Of faces or edges.
 template <class Entity, class Value>
-std::vector<double> collect(const std::vector<Entity>& all, bool inner, Value value) {
+std::vector<double> collect(const Statistics& s, const std::vector<Entity>& all, Value value) {
   std::vector<double> values;
   for (const Entity& one : all)
-    if (!inner || one.inner) values.push_back(static_cast<double>(value(one)));
+    if (s.counts(one)) values.push_back(static_cast<double>(value(one)));
   return values;
 }
 
 void add_polycrystal(Statistics& s) {
-  const bool inner = s.options.inner;
   const auto grains = [&](const Kind& kind, auto value) {
-    s.quantities.push_back(make(kind, collect(s.measures.grains, inner, value)));
+    s.quantities.push_back(make(kind, of_grains(s, value)));
   };
   const auto faces = [&](const Kind& kind, auto value) {
-    s.quantities.push_back(make(kind, collect(s.measures.faces, inner, value)));
+    s.quantities.push_back(make(kind, collect(s, s.measures.faces, value)));
   };
   grains(grain_volume, [](const GrainMeasures& g) { return g.volume; });
-  std::vector<double> diameters =
-      collect(s.measures.grains, inner, [](const GrainMeasures& g) { return g.diameter(); });
+  std::vector<double> diameters = of_grains(s, [](const GrainMeasures& g) { return g.diameter(); });
   const double mean = describe(diameters).mean;
   for (double& d : diameters) d /= mean;
   s.quantities.push_back(make(grain_diameter, std::move(diameters)));
@@ -132,7 +138,7 @@ void add_polycrystal(Statistics& s) {
   faces(face_fault, [](const FaceMeasures& f) { return f.flatness_fault; });
   faces(face_corner, [](const FaceMeasures& f) { return f.least_corner; });
   s.quantities.push_back(
-      make(edge_length, collect(s.measures.edges, inner, [](const auto& e) { return e.length; })));
+      make(edge_length, collect(s, s.measures.edges, [](const auto& e) { return e.length; })));
 }
 
 /// Elements of the grains that count; single precision: they may be tens of millions.
@@ -242,10 +248,13 @@ Statistics statistics_of(mesh::Measures measures, const mesh::Mesh* mesh,
     throw core::InputError(fmt::format(
         "--inner: each of the {} grains has a face on the domain boundary; leave it out",
         s.grains));
-  s.faces = static_cast<int>(s.measures.faces.size());
-  s.edges = static_cast<int>(s.measures.edges.size());
-  for (const EdgeMeasures& e : s.measures.edges)
-    s.vertices = std::max({s.vertices, e.vertices[0] + 1, e.vertices[1] + 1});
+  const auto once = [](const auto& all) {
+    return static_cast<int>(
+        std::count_if(all.begin(), all.end(), [](const auto& one) { return !one.is_translate; }));
+  };
+  s.faces = once(s.measures.faces);
+  s.edges = once(s.measures.edges);
+  s.vertices = s.measures.vertices;
   add_polycrystal(s);
   if (mesh != nullptr) {
     s.elements = mesh->element_count();

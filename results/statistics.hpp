@@ -38,8 +38,8 @@ struct StatisticsOptions {
 struct Statistics {
   StatisticsOptions options;  ///< element_size is set if there is a mesh
   int grains = 0, inner_grains = 0;
-  int faces = 0, edges = 0, vertices = 0;
-  long elements = 0, nodes = 0;  ///< 0 without a mesh
+  int faces = 0, edges = 0, vertices = 0;  ///< translates of a periodic polycrystal once
+  long elements = 0, nodes = 0;            ///< 0 without a mesh
   std::vector<Quantity> quantities;
   /// The file's own numbers of grains and elements, [grain] and [element]; empty: from 1.
   std::vector<int> grain_ids, file_rows;
@@ -57,6 +57,11 @@ struct Statistics {
   std::string domain_face_name(int face) const;
   /// The quantity of that key; InternalError if there is none.
   const Quantity& quantity(const std::string& key) const;
+  /// Whether a face or edge is one of those that are counted.
+  template <class Entity>
+  bool counts(const Entity& one) const {
+    return !one.is_translate && (!options.inner || one.inner);
+  }
   bool counts(int grain) const { return !options.inner || measures.grains[grain].inner; }
 };
 

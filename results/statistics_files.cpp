@@ -80,9 +80,9 @@ void write_faces(const std::string& path, const Statistics& s) {
   write_table(
       path,
       "face,inner,grain_1,grain_2,domain_face,edges,area,diameter,flatness_fault,least_corner",
-      s.faces, [&](Buffer& text, long row) {
+      std::ssize(s.measures.faces), [&](Buffer& text, long row) {
         const auto& f = s.measures.faces[row];
-        if (s.options.inner && !f.inner) return;
+        if (!s.counts(f)) return;
         add(text, "{},{:d},{},{},{},{},{},{},{},{}\n", row + 1, f.inner, s.grain_id(f.cells[0]),
             f.cells[1] < 0 ? 0 : s.grain_id(f.cells[1]), s.domain_face_name(f.domain_face), f.edges,
             f.area, f.diameter(), f.flatness_fault, f.least_corner);
@@ -90,10 +90,10 @@ void write_faces(const std::string& path, const Statistics& s) {
 }
 
 void write_edges(const std::string& path, const Statistics& s) {
-  write_table(path, "edge,inner,vertex_1,vertex_2,faces,length", s.edges,
+  write_table(path, "edge,inner,vertex_1,vertex_2,faces,length", std::ssize(s.measures.edges),
               [&](Buffer& text, long row) {
                 const auto& e = s.measures.edges[row];
-                if (s.options.inner && !e.inner) return;
+                if (!s.counts(e)) return;
                 add(text, "{},{:d},{},{},{},{}\n", row + 1, e.inner, e.vertices[0] + 1,
                     e.vertices[1] + 1, e.faces, e.length);
               });

@@ -143,6 +143,46 @@ TEST(Measures, FlatnessFaultIsThatOfTheInterpolationTriangles) {
   EXPECT_NEAR(volume, 60, 1e-9);
 }
 
+// A torus has V - E + F - C = 0; four grains meet at a vertex, three faces at an edge.
+TEST(Measures, CountPeriodicTranslatesOnce) {
+  for (const bool regularised : {false, true}) {
+    PolycrystalOptions options;
+    options.grains = 40;
+    options.periodic = {true, true, true};
+    Tessellation t = voronoi_tessellation(options);
+    if (regularised) regularise(t, {});
+    const Measures m = measure(t);
+    int faces = 0, edges = 0, sides = 0, of_grains = 0, sides_of_faces = 0;
+    for (const FaceMeasures& f : m.faces) {
+      EXPECT_GE(f.cells[1], 0);
+      EXPECT_TRUE(f.inner);
+      if (f.is_translate) continue;
+      ++faces;
+      sides_of_faces += f.edges;
+    }
+    for (const EdgeMeasures& e : m.edges) {
+      EXPECT_TRUE(e.inner);
+      if (e.is_translate) continue;
+      ++edges;
+      sides += e.faces;
+      if (!regularised) {
+        EXPECT_EQ(e.faces, 3);
+      }
+    }
+    for (const GrainMeasures& g : m.grains) {
+      EXPECT_TRUE(g.inner);
+      EXPECT_GE(g.neighbours, 4);
+      of_grains += g.faces;
+    }
+    EXPECT_EQ(of_grains, 2 * faces);
+    EXPECT_EQ(sides, sides_of_faces);
+    EXPECT_EQ(m.vertices - edges + faces - 40, 0);
+    if (!regularised) {
+      EXPECT_EQ(edges, 2 * m.vertices);
+    }
+  }
+}
+
 TEST(Measures, OfAMeshOfSlabs) {
   const Mesh mesh = tests::box_mesh({4, 2, 2}, {4, 2, 2}, 2);
   const Measures m = measure(mesh);
