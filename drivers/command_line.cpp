@@ -66,7 +66,11 @@ void add_mesh(CLI::App& app, Command& c) {
   CLI::App* verb = app.add_subcommand("mesh", "Grow and mesh a polycrystal only");
   add_deck(*verb, c);
   verb->add_option("--out", c.out, "Folder")->required();
-  verb->add_option("--picture", c.picture, "Picture of the mesh to write too (PNG)");
+  CLI::Option* picture =
+      verb->add_option("--picture", c.picture, "Picture of the mesh to write too (PNG)");
+  verb->add_flag("--cut", c.cut,
+                 "Show the inside in the picture: leave out an eighth of the grains")
+      ->needs(picture);
   add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
   add_jobs(*verb, c);

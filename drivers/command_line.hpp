@@ -14,6 +14,7 @@ struct Command {
   Verb verb = Verb::none;
   std::string deck;
   std::string picture;  ///< mesh: file of the picture to write too; empty: none
+  bool cut = false;     ///< mesh: whether the picture shows the inside
   std::string out;      ///< --out; for `run` the default is the deck's name and "-run"
   bool overwrite = false;
   std::string restart;  ///< --restart

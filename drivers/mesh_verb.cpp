@@ -15,6 +15,7 @@
 #include "results/folder.hpp"
 #include "results/names.hpp"
 #include "results/picture.hpp"
+#include "results/picture_cut.hpp"
 #include "results/summary.hpp"
 
 namespace polyslip::drivers {
@@ -31,7 +32,7 @@ void check_picture(const std::string& picture) {
 }  // namespace
 
 void make_mesh(const std::string& deck_path, const std::string& folder, bool overwrite, int jobs,
-               mesh::MesherPool& pool, const std::string& picture) {
+               mesh::MesherPool& pool, const std::string& picture, bool cut) {
   const double wall_start = core::wall_seconds();
   core::Deck deck = core::Deck::from_file(deck_path);
   Options options = read_options(deck, Purpose::mesh);
@@ -63,7 +64,8 @@ void make_mesh(const std::string& deck_path, const std::string& folder, bool ove
   results::write_summary(path(results::summary_name), summary);
   log.info("mesh: {}", path(results::mesh_name(0)));
   if (picture.empty()) return;
-  results::write_mesh_picture(picture, mesh, input.orientations, {.width = 520});
+  results::write_mesh_picture(picture, cut ? results::without_nearest_eighth(mesh) : mesh,
+                              input.orientations, {.width = 520});
   log.info("picture: {}", picture);
 }
 

@@ -95,7 +95,7 @@ int obey(const Command& command) {
       return check(command);
     case Verb::mesh:
       drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs, *start_pool(),
-                         command.picture);
+                         command.picture, command.cut);
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);
