@@ -12,6 +12,7 @@
 #include "drivers/orientations.hpp"
 #include "mesh/polycrystal.hpp"
 #include "mesh/tess_writer.hpp"
+#include "mesh/volume_change.hpp"
 #include "results/names.hpp"
 
 namespace polyslip::drivers {
@@ -100,7 +101,9 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
   log_domain(tessellation, given ? *options.input.tessellation : origin_of(options), log);
   progress("regularising", 0);
   const auto measure = times.measure("regularisation");
+  const std::vector<double> volumes = mesh::cell_volumes(tessellation);
   const mesh::RegularisationReport report = mesh::regularise(tessellation, options.regularisation);
+  const auto change = mesh::volume_change(volumes, mesh::cell_volumes(tessellation));
   log.info(
       "regularisation: {} of {} edges were short, {} are left; {} deletions in {} loops; {} "
       "refused for flatness, {} for folding, {} for topology, {} for polylines, {} for the domain; "
@@ -108,6 +111,9 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
       report.short_before, report.edges_before, report.short_after, report.deleted, report.loops,
       report.refused.flatness, report.refused.fold, report.refused.topology,
       report.refused.polyline, report.refused.domain, report.max_flatness_fault);
+  if (change.worst_cell >= 0)
+    log.info("regularisation: grains' volumes changed by {:.2g} % rms, grain {}'s by {:+.2g} %",
+             100 * change.rms, change.worst_cell + 1, 100 * change.worst);
   tessellation.check();
   if (const auto& pairs = tessellation.topology.periodic; !pairs.empty())
     log.info("polycrystal: periodic; {} pairs of faces, {} of edges, {} of vertices",
