@@ -12,6 +12,7 @@
 #include "core/timer.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/pipeline.hpp"
+#include "process_memory.hpp"
 
 namespace {
 
@@ -30,7 +31,8 @@ struct Options {
   mesh::RegularisationOptions regularisation;
   mesh::MeshingOptions meshing;
   std::string csv;
-  int worst = 0;  // elements to be listed
+  int worst = 0;         // elements to be listed
+  bool compare = false;  // with each mesher alone
 };
 
 /// Figures of one case; CPU in ms a grain.
@@ -114,8 +116,16 @@ void list_worst(const mesh::Mesh& mesh, int count) {
   }
 }
 
+std::string wins_text(const std::vector<std::string>& meshers, const std::vector<int>& wins) {
+  std::string text;
+  for (std::size_t i = 0; i < wins.size() && i < meshers.size(); ++i)
+    text += fmt::format("{}{} {}", i ? ", " : "", meshers[i], wins[i]);
+  return text;
+}
+
 Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) {
   Figures f;
+  benchmarks::MemoryWatch memory;
   mesh::PolycrystalOptions polycrystal;
   polycrystal.grains = wanted.grains;
   polycrystal.seed = options.seed;
@@ -138,11 +148,10 @@ Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) 
   f.wall = core::wall_seconds() - wall;
   f.elements = mesh.element_count();
   f.nodes = mesh.node_count();
-  f.peak_mb = core::peak_rss_mb();
+  f.peak_mb = memory.peak();
   measure_elements(mesh, wanted.element_size, f);
   if (options.worst > 0) list_worst(mesh, options.worst);
-  for (std::size_t i = 0; i < report.wins.size(); ++i)
-    f.wins += fmt::format("{}{} {}", i ? ", " : "", meshing.meshers[i], report.wins[i]);
+  f.wins = wins_text(meshing.meshers, report.wins);
   return f;
 }
 
@@ -151,11 +160,24 @@ double per_100k(int count, const Figures& f) { return 1e5 * count / f.elements; 
 void print(const Case& c, const Figures& f) {
   fmt::print(
       "{:6d} {:5.2f} | {:9d} {:9d} | {:5.2f} {:5.2f} {:6.2f} {:6.2f} | {:.4f} {:.4f} {:6.2f} "
-      "{:6.2f} {:.4f} {:.4f} | {:6.1f} {:6.0f} | {}\n",
+      "{:6.2f} {:.4f} {:.5f} | {:6.1f} {:6.0f} | {}\n",
       c.grains, c.element_size, f.elements, f.nodes, f.tessellation, f.regularisation, f.meshing,
       f.workers, f.worst, f.mean, per_100k(f.below_005, f), per_100k(f.below_01, f), f.mean_worst,
       f.mean_O, f.wall, f.peak_mb, f.wins);
   std::fflush(stdout);
+}
+
+/// The same polycrystal by each mesher alone; whether none has a better mean O or worst element.
+bool compare(const Case& wanted, const Figures& f, Options options, mesh::MesherPool& pool) {
+  bool good = true;
+  for (const auto& mesher : mesh::known_meshers) {
+    options.meshing.meshers = {mesher};
+    const Figures alone = run(wanted, options, pool);
+    print(wanted, alone);
+    good = good && f.mean_O >= alone.mean_O && f.worst >= alone.worst;
+  }
+  fmt::print("no mesher alone has a better mean O or worst element: {}\n", good);
+  return good;
 }
 
 void write_csv(const std::string& path, const std::vector<std::pair<Case, Figures>>& rows) {
@@ -192,6 +214,8 @@ int main(int argc, char** argv) {
                "nodes slide in faces and along edges");
   app.add_option("--jobs", options.meshing.jobs);
   app.add_option("--worst", options.worst, "list so many of the worst elements");
+  app.add_flag("--compare", options.compare,
+               "each mesher alone too; exit code 1 if one has a better mean O or worst element");
   app.add_option("--csv", options.csv, "file for the table");
   CLI11_PARSE(app, argc, argv);
   const auto pool = mesh::MesherPool::start(options.worker);
@@ -199,11 +223,14 @@ int main(int argc, char** argv) {
       "grains   c_l |  elements     nodes |  CPU ms a grain: tess. reg. meshing (workers) | radius "
       "ratio: worst mean, < 0.05 and < 0.1 per 1e5, mean worst of grain; O | wall s, MB | wins\n");
   std::vector<std::pair<Case, Figures>> rows;
+  bool good = true;
   for (const double element_size : options.element_sizes)
     for (const int grains : options.grains) {
       const Case wanted{grains, element_size};
       rows.emplace_back(wanted, run(wanted, options, *pool));
       print(rows.back().first, rows.back().second);
+      if (options.compare) good &= compare(wanted, rows.back().second, options, *pool);
     }
   if (!options.csv.empty()) write_csv(options.csv, rows);
+  return good ? 0 : 1;
 }

@@ -9,60 +9,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <thread>
 
+#include "process_memory.hpp"
+
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Number behind `key` in a file of lines "key: number kB"; 0 if there is none.
-long field(const fs::path& path, const std::string& key) {
-  std::ifstream in(path);
-  std::string word;
-  long value = 0;
-  while (in >> word)
-    if (word == key && in >> value) return value;
-  return 0;
-}
-
-/// A process and all its descendants.
-std::set<pid_t> family(pid_t root) {
-  std::map<pid_t, pid_t> parents;
-  for (const auto& entry : fs::directory_iterator("/proc")) {
-    const std::string name = entry.path().filename().string();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    parents[std::stoi(name)] = static_cast<pid_t>(field(entry.path() / "status", "PPid:"));
-  }
-  std::set<pid_t> members{root};
-  for (bool grew = true; grew;) {
-    grew = false;
-    for (const auto& [pid, parent] : parents)
-      if (members.count(parent)) grew |= members.insert(pid).second;
-  }
-  return members;
-}
-
-/// Proportional set sizes [MB, 1e6 bytes]: shared pages count once among those that share them.
-struct Memory {
-  double main = 0, all = 0;
-};
-
-Memory memory_of(pid_t root) {
-  Memory memory;
-  for (const pid_t pid : family(root)) {
-    const auto file = fs::path("/proc") / std::to_string(pid) / "smaps_rollup";
-    const double size = 1.024e-3 * static_cast<double>(field(file, "Pss:"));
-    memory.all += size;
-    if (pid == root) memory.main = size;
-  }
-  return memory;
-}
+using namespace polyslip::benchmarks;
 
 double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);

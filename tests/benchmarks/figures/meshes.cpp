@@ -67,7 +67,10 @@ mesh::MeshingOptions meshing_options(const Options& o, const Strategy& strategy)
   meshing.progression_factor = strategy.progression;
   meshing.jobs = o.jobs;
   if (!strategy.meshers.empty()) meshing.meshers = strategy.meshers;
-  if (strategy.paper) meshing.slide_boundary = false;
+  if (strategy.paper) {
+    meshing.slide_boundary = false;
+    meshing.mesher_target = 1;  // each mesher tries each grain
+  }
   return meshing;
 }
 
