@@ -25,10 +25,11 @@ solver::SolverOptions read_solver(Deck& deck) {
   o.element = t.text(
       "element",
       {.fallback = o.element,
-       .choices = {"mixed", "displacement"},
+       .choices = {"mixed", "displacement", "displacement-straight"},
        .help = "mixed: ten-node tetrahedra with one constant pressure each. displacement: the "
-               "same without a pressure of its own, as other programs have it, for comparison: it "
-               "is too stiff, and its stresses oscillate."});
+               "same without a pressure of its own, for comparison with other programs: it is too "
+               "stiff, and its stresses oscillate. displacement-straight: that on the straight "
+               "tetrahedra of the corners, whatever the mid nodes do, as FEPX has it."});
   o.quadrature_points = static_cast<int>(t.integer(
       "quadrature_points",
       {.fallback = o.quadrature_points,

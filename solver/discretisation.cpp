@@ -126,7 +126,7 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
     ElementGeometry geometry;
     double* f = &f_[9 * first];
     if (!geometry_of(static_cast<std::size_t>(e), geometry) ||
-        !relative_gradients(positions(e, old.x), geometry, f)) {
+        !relative_gradients(positions(e, old.x), positions(e, x_), geometry, f)) {
       failed = 1;
       continue;
     }

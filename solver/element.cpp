@@ -83,11 +83,11 @@ bool element_geometry(const PointRule& rule, const ElementPositions& x, ElementG
   geometry.volume = 0;
   double smallest = std::numeric_limits<double>::max(), mean = 0;
   for (int q = 0; q < rule.points; ++q) {
-    const auto& reference = rule.point_gradients[q];
+    const auto &reference = rule.point_gradients[q], &mapping = rule.point_mapping[q];
     double jacobian[3][3] = {};  // dx_i/dxi_j
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        for (int a = 0; a < element_nodes; ++a) jacobian[i][j] += x[a][i] * reference[j][a];
+        for (int a = 0; a < element_nodes; ++a) jacobian[i][j] += x[a][i] * mapping[j][a];
     const double det = determinant(jacobian);
     if (!(det > 0)) return false;
     double inverse[3][3];  // dxi_j/dx_i at [j][i]
@@ -106,13 +106,15 @@ bool element_geometry(const PointRule& rule, const ElementPositions& x, ElementG
   return true;
 }
 
-bool relative_gradients(const ElementPositions& x_old, const ElementGeometry& geometry, double* f) {
+bool relative_gradients(const ElementPositions& x_old, const ElementPositions& x,
+                        const ElementGeometry& geometry, double* f) {
   for (int q = 0; q < geometry.points; ++q) {
-    double inverse[3][3] = {};  // dx_{n,i}/dx_{n+1,j} = f^-1
+    // f^-1 = dx_{n,i}/dx_{n+1,j} = delta_ij - du_i/dx_{n+1,j}
+    double inverse[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         for (int a = 0; a < element_nodes; ++a)
-          inverse[i][j] += x_old[a][i] * geometry.gradients[q][j][a];
+          inverse[i][j] -= (x[a][i] - x_old[a][i]) * geometry.gradients[q][j][a];
     const double det = determinant(inverse);
     if (!(det > 0)) return false;
     double forward[3][3];

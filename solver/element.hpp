@@ -33,9 +33,10 @@ struct ElementGeometry {
 /// Gradients and weights; false (contents unusable) if det J <= 0 or is NaN at a point.
 bool element_geometry(const PointRule& rule, const ElementPositions& x, ElementGeometry& geometry);
 
-/// f_ij = d x_{n+1,i} / d x_{n,j} at each point, from the old positions and the new geometry, and
-/// in the lanes that fill the last block; false if it is not invertible.
-bool relative_gradients(const ElementPositions& x_old, const ElementGeometry& geometry, double* f);
+/// f_ij = d x_{n+1,i} / d x_{n,j} at each point, from old and new positions and the new geometry,
+/// and in the lanes that fill the last block; false if it is not invertible.
+bool relative_gradients(const ElementPositions& x_old, const ElementPositions& x,
+                        const ElementGeometry& geometry, double* f);
 
 /// f_ai = sum_q w J (sigma'_ij + p delta_ij) dN_a/dx_j  [stress x length^2]
 /// stress: deviatoric Cauchy stress; mean_stress[q]: p.

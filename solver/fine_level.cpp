@@ -74,8 +74,8 @@ inline void add_forces(const PointLanes& p, const std::array<std::array<float, 1
 }  // namespace
 
 FineLevel::FineLevel(const LinearLayout& layout)
-    : layout_(layout), element_points_(layout.points), threaded_(omp_get_max_threads() > 1) {
-  const PointRule& rule = point_rule(element_points_);
+    : layout_(layout), element_points_(layout.rule->points), threaded_(omp_get_max_threads() > 1) {
+  const PointRule& rule = *layout.rule;
   gradients_.resize(static_cast<std::size_t>(element_points_));
   for (int q = 0; q < element_points_; ++q)
     for (int L = 0; L < 3; ++L)

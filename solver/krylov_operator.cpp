@@ -15,13 +15,16 @@ namespace {
 constexpr int dofs = 3 * element_nodes;
 const double half_sqrt2 = std::sqrt(0.5);
 
-/// Displacement gradient in reference coordinates at the points of a block, [k][L] = du_k / dxi_L.
-inline void reference_gradient(const PointRule& rule, int block, const double* u, Points h[3][3]) {
+/// Gradients of a block's points: shape functions or mapping of a PointRule.
+using BlockGradients = double[3][element_nodes][material::lanes];
+
+/// Gradient in reference coordinates at the points of a block, [k][L] = du_k / dxi_L.
+inline void reference_gradient(const BlockGradients& gradients, const double* u, Points h[3][3]) {
   for (int k = 0; k < 3; ++k)
     for (int L = 0; L < 3; ++L) h[k][L] = Points{};
   for (int b = 0; b < element_nodes; ++b)
     for (int L = 0; L < 3; ++L) {
-      const Points g = load_points(rule.gradients[block][L][b]);
+      const Points g = load_points(gradients[L][b]);
       for (int k = 0; k < 3; ++k) h[k][L] += g * u[3 * b + k];
     }
 }
@@ -107,7 +110,7 @@ inline void stress_change(const double* tangent, const double* stress, Points me
 
 KrylovOperator::KrylovOperator(const LinearLayout& layout)
     : layout_(layout),
-      rule_(point_rule(layout.points)),
+      rule_(*layout.rule),
       threaded_(omp_get_max_threads() > 1),
       geometry_(10 * layout.local->elements.size() * static_cast<std::size_t>(rule_.slots)),
       u_(3 * static_cast<std::size_t>(layout.local->local_nodes)),
@@ -128,7 +131,7 @@ void KrylovOperator::set(const LinearBlocks& blocks) {
         x[3 * a + i] = blocks.x[3 * static_cast<std::size_t>(layout_.local->elements[e][a]) + i];
     for (int block = 0; block < rule_.blocks; ++block) {
       Points j[3][3];  // dx_i / dxi_L
-      reference_gradient(rule_, block, x, j);
+      reference_gradient(rule_.mapping[block], x, j);
       const auto minor = [&](int i, int k) {
         const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
         return j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
@@ -164,7 +167,7 @@ void KrylovOperator::element(int e, const double* p, double* yp, double* f) cons
   Points T[blocks][3][3], w[blocks], d[blocks], c[blocks];
   for (int b = 0; b < blocks; ++b) {
     Points r[3][3], h[3][3];
-    reference_gradient(rule_, b, u, r);
+    reference_gradient(rule_.gradients[b], u, r);
     const double* g = geometry + 40 * b;
     for (int l = 0; l < 3; ++l) {
       const Points x = load_points(g + 4 * (1 + l)), y = load_points(g + 4 * (4 + l)),

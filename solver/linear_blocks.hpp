@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/partition.hpp"
+#include "solver/reference_element.hpp"
 
 namespace polyslip::solver {
 
@@ -13,8 +14,8 @@ namespace polyslip::solver {
 struct LinearLayout {
   const LocalMesh* local = nullptr;
   const NodeExchange* exchange = nullptr;
-  bool mixed = true;                      ///< else the displacement element, without pressures
-  int points = 4;                         ///< of an element: 4, 8, 14 or 15
+  bool mixed = true;  ///< else the displacement element, without pressures
+  const PointRule* rule = &point_rule(4);
   std::vector<double> coordinates;        ///< [owned_nodes][3], for the rigid-body modes
   std::vector<std::uint8_t> constrained;  ///< [local_nodes][3] Dirichlet dofs
 

@@ -79,7 +79,7 @@ struct Model::Impl {
         log(std::move(log_line)),
         root(rank_of(c) == 0),
         mixed(options.element == "mixed"),
-        rule(point_rule(options.quadrature_points)),
+        rule(point_rule(options.quadrature_points, options.element == "displacement-straight")),
         base(checked(snapshot)),
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
@@ -88,7 +88,7 @@ struct Model::Impl {
         control(load),
         predictor(3 * distribution.local().node_global.size(),
                   distribution.local().elements.size()) {
-    if (!mixed && options.element != "displacement")
+    if (!mixed && !rule.straight && options.element != "displacement")
       throw core::InternalError("Model: no element \"" + options.element + "\"");
     strain = broadcast(comm, base.strain);
     time = broadcast(comm, base.time);

@@ -33,7 +33,7 @@ LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t
   layout.local = &d.local();
   layout.exchange = &d.exchange();
   layout.mixed = d.mixed();
-  layout.points = d.rule().points;
+  layout.rule = &d.rule();
   layout.coordinates.assign(x.begin(), x.begin() + 3 * static_cast<long>(d.local().owned_nodes));
   layout.constrained = constrained;
   return layout;

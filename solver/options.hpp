@@ -56,8 +56,9 @@ struct LoadingOptions {
 };
 
 struct SolverOptions {
-  std::string element = "mixed";  ///< "mixed" (T10/P0) or "displacement"
-  int quadrature_points = 4;      ///< of an element: 4, 8, 14 or 15
+  std::string element =
+      "mixed";                ///< "mixed" (T10/P0), "displacement" or its "displacement-straight"
+  int quadrature_points = 4;  ///< of an element: 4, 8, 14 or 15
   double newton_tolerance = 1e-3;
   int max_newton_iterations = 20;
   double linear_tolerance = 1e-2;

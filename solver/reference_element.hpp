@@ -1,5 +1,6 @@
 #pragma once
-// Shape functions of the ten-node tetrahedron at the points of a quadrature rule.
+// Shape functions of the ten-node tetrahedron at the points of a quadrature rule, and the functions
+// that map its positions.
 
 #include <array>
 
@@ -21,8 +22,13 @@ struct PointRule {
   /// [block][direction][node][lane] dN_a / dxi_L
   double gradients[max_point_blocks][3][element_nodes][material::lanes];
   double weights[max_point_blocks][material::lanes];  ///< they add up to 1/6
+  /// Likewise of the functions that map the positions, x = sum_a M_a(xi) x_a: the shape functions,
+  /// or those of the straight tetrahedron of the corners (zero for mid nodes).
+  double mapping[max_point_blocks][3][element_nodes][material::lanes];
   /// The same point by point: [point][direction][node]
   double point_gradients[max_element_points][3][element_nodes];
+  double point_mapping[max_element_points][3][element_nodes];
+  bool straight = false;
 
   /// Index in an array [block][components][lane] of component c of the point q.
   static constexpr int at(int components, int c, int q) {
@@ -30,7 +36,8 @@ struct PointRule {
   }
 };
 
-/// Of mesh::tet_quadrature(points). Throws core::InternalError if there is no such rule.
-const PointRule& point_rule(int points);
+/// Of mesh::tet_quadrature(points); `straight`: on the tetrahedron of the corners. Throws
+/// core::InternalError if there is no such rule.
+const PointRule& point_rule(int points, bool straight = false);
 
 }  // namespace polyslip::solver

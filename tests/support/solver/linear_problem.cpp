@@ -154,9 +154,7 @@ void to_petsc(const std::vector<double>& from, Vec v) {
 
 bool fixed(const double* x, int dof) { return x[dof] < 1e-9 || (dof > 0 && x[dof] > 1 - 1e-9); }
 
-const solver::PointRule& rule_of(const LinearProblem& p) {
-  return solver::point_rule(p.layout.points);
-}
+const solver::PointRule& rule_of(const LinearProblem& p) { return *p.layout.rule; }
 
 /// Stress and tangent of element e's points, and of the lanes that fill its last block; numbers
 /// that depend on the mesh's element alone.
@@ -233,7 +231,7 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
   p.layout.local = &local;
   p.layout.exchange = p.exchange.get();
   p.layout.mixed = o.mixed;
-  p.layout.points = o.points;
+  p.layout.rule = &solver::point_rule(o.points, o.straight);
   std::vector<double> lift;
   for (int n : local.node_mesh) {
     const Vec3 x = cube.position(n);

@@ -25,6 +25,7 @@ struct LinearProblemOptions {
   double resistance = 0;   ///< kappa / mean mu_e, solver/point_volumes.hpp
   bool mixed = true;       ///< else the displacement element, K inside A
   int points = 4;          ///< of an element
+  bool straight = false;   ///< of solver/reference_element.hpp
   int idle_ranks = 0;      ///< ranks, the last ones, that own nothing (one rank is left)
   std::uint64_t seed = 1;
 };

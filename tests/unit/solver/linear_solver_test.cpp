@@ -270,6 +270,8 @@ std::vector<LinearProblemOptions> every_element() {
       o.mixed = mixed;
       o.points = points;
       all.push_back(o);
+      o.straight = true;
+      if (!mixed && points == 15) all.push_back(o);
     }
   return all;
 }
