@@ -45,6 +45,9 @@ void add_run(CLI::App& app, Command& c) {
   add_overwrite(*verb, c, "Replace an earlier run in the folder");
   add_threads(*verb, c);
   add_jobs(*verb, c);
+  verb->add_flag("--profile", c.profile,
+                 "Say at the end where the deformation's time went, stage by stage (profile.txt, "
+                 "and PETSc's own log in profile-petsc.txt)");
   verb->callback([&c] {
     c.verb = Verb::run;
     if (c.deck.empty() && c.restart.empty())

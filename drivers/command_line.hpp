@@ -19,9 +19,10 @@ struct Command {
   bool overwrite = false;
   std::string restart;  ///< --restart
   int threads = 1;
-  int jobs = 0;        ///< --jobs; 0: one a core
-  std::string folder;  ///< convert: run folder, or a file that becomes `out`; report: run folder
-  std::string format;  ///< convert, of `out`; empty: by its extension
+  bool profile = false;  ///< run: --profile
+  int jobs = 0;          ///< --jobs; 0: one a core
+  std::string folder;    ///< convert: run folder, or a file that becomes `out`; report: run folder
+  std::string format;    ///< convert, of `out`; empty: by its extension
   double at_strain = 0;
   std::string to;
   std::string value = "average";

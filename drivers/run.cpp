@@ -137,15 +137,26 @@ mesh::Snapshot RunJob::begin() {
 
 void RunJob::build_model(const mesh::Snapshot& snapshot) {
   model_.reset();  // not two at a time
-  model_ =
-      std::make_unique<solver::Model>(comm_, snapshot, *law_, options_.loading, options_.solver,
-                                      [this](const std::string& line) { log_.info(line); });
+  model_ = std::make_unique<solver::Model>(
+      comm_, snapshot, *law_, options_.loading, options_.solver,
+      [this](const std::string& line) { log_.info(line); }, request_.profile ? &profile_ : nullptr);
   watch(snapshot);
+}
+
+void RunJob::write_profile() {
+  if (!request_.profile) return;
+  solver::write_petsc_log(path(results::petsc_profile_name));
+  const std::string text = solver::profile_text(profile_, comm_);
+  on_root(comm_, [&] {
+    core::write_file(path(results::profile_name), text);
+    log_.info("profile: " + path(results::profile_name));
+  });
 }
 
 void RunJob::finish(bool completed) {
   if (!model_) return;
   const mesh::Snapshot last = model_->snapshot();
+  write_profile();
   const auto cpu_s = sum_over_ranks(comm_, progress_.cpu_s, times_);
   const double memory = sum_over_ranks(comm_, core::peak_rss_mb());
   on_root(comm_, [&] {
@@ -189,6 +200,7 @@ void RunJob::start() {
 }
 
 int RunJob::go() {
+  if (request_.profile) profile_.log_with_petsc();
   read_deck();
   if (!request_.restart)
     on_root(comm_, [&] {

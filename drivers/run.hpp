@@ -17,6 +17,7 @@ struct RunRequest {
   std::string folder;  ///< run folder
   bool overwrite = false;
   bool restart = false;
+  bool profile = false;
   int jobs = 0;  ///< mesher processes and threads of meshing; 0: one a core
 };
 

@@ -47,6 +47,7 @@ class RunJob {
   // run.cpp: the end
   void stop(const std::string& reason);
   void finish(bool completed);
+  void write_profile();
 
   // run_deformation.cpp
   void deform();
@@ -94,6 +95,7 @@ class RunJob {
   Input input_;  ///< of a run that begins; on rank 0
   std::vector<Event> events_;
   std::unique_ptr<material::CrystalLaw> law_;
+  solver::Profile profile_;
   std::unique_ptr<solver::Model> model_;
   std::optional<MeshWatch> watch_;  ///< on rank 0
   std::optional<results::MacroCsv> macro_;

@@ -30,6 +30,7 @@ fails when the two differ.
 | `report.html` | all of it in one page (report.md) |
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |
+| `profile.txt`, `profile-petsc.txt` | with `--profile`: CPU and wall time of the deformation by stage, messages between ranks; the same stages in PETSc's own log |
 
 Files are written beside (`.part`) and renamed, so that a killed run leaves none of them half
 written; `macro.csv` and `log.txt` grow line by line.

@@ -118,6 +118,7 @@ void Discretisation::add_point_volumes(std::size_t e) {
 }
 
 Evaluation Discretisation::kinematics(const Configuration& old) {
+  const Stage stage(exchange_.profile(), "kinematics");
   int failed = 0;
   const int n = local_.element_count();
 #pragma omp parallel for schedule(static) reduction(max : failed)
@@ -146,6 +147,7 @@ Evaluation Discretisation::kinematics(const Configuration& old) {
 }
 
 Evaluation Discretisation::update_material(const Configuration& old, double time_step) {
+  const Stage stage(exchange_.profile(), "material");
   material::PointBlocks blocks;
   blocks.n_blocks = local_.element_count() * rule_.blocks;
   blocks.time_step = time_step;
@@ -163,6 +165,7 @@ Evaluation Discretisation::update_material(const Configuration& old, double time
 }
 
 void Discretisation::sum_forces() {
+  const Stage stage(exchange_.profile(), "forces");
   const int n = local_.element_count();
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < n; ++e) {
@@ -208,6 +211,7 @@ void Discretisation::linearise_element(std::size_t e) {
 }
 
 LinearBlocks Discretisation::linearise() {
+  const Stage stage(exchange_.profile(), "linearisation");
   LinearBlocks blocks;
   blocks.x = x_.data();
   blocks.stress = stress_.data();

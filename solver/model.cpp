@@ -55,6 +55,7 @@ struct Model::Impl {
   std::function<void(const std::string&)> log;
   bool root, mixed;
   const PointRule& rule;
+  Profile* profile;
   mesh::Snapshot base;     // rank 0: mesh and what else came with the snapshot
   std::vector<int> ranks;  // rank 0: of each element
   Distribution distribution;
@@ -71,7 +72,7 @@ struct Model::Impl {
 
   Impl(MPI_Comm c, const mesh::Snapshot& snapshot, const material::CrystalLaw& l, Boundary b,
        const LoadingOptions& load, const SolverOptions& options,
-       std::function<void(const std::string&)> log_line)
+       std::function<void(const std::string&)> log_line, Profile* times)
       : comm(c),
         law(l),
         loading(load),
@@ -80,10 +81,11 @@ struct Model::Impl {
         root(rank_of(c) == 0),
         mixed(options.element == "mixed"),
         rule(point_rule(options.quadrature_points, options.element == "displacement-straight")),
+        profile(times),
         base(checked(snapshot)),
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
-        exchange(distribution.local()),
+        exchange(distribution.local(), profile),
         program(load),
         control(load),
         predictor(3 * distribution.local().node_global.size(),
@@ -301,6 +303,7 @@ struct Model::Impl {
   }
 
   StepRecord step(double target) {
+    const Stage stage(profile, "step");
     if (!(target > strain) || program.finished())
       throw core::InternalError(fmt::format("Model::step: {} is not beyond {}", target, strain));
     target = std::min(target, program.stage_end());
@@ -351,6 +354,7 @@ struct Model::Impl {
   }
 
   mesh::Snapshot snapshot() const {
+    const Stage stage(profile, "snapshot");
     mesh::Snapshot out = base;
     const auto nodes = [&](const std::vector<double>& v) {
       return distribution.gather_nodes(v, 3);
@@ -421,16 +425,16 @@ LoadingOptions without_end(LoadingOptions loading) {
 
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              const LoadingOptions& loading, const SolverOptions& options,
-             std::function<void(const std::string&)> log)
+             std::function<void(const std::string&)> log, Profile* profile)
     : impl_(std::make_unique<Impl>(comm, snapshot, law,
                                    make_boundary(loading, box_size(comm, snapshot)), loading,
-                                   options, std::move(log))) {}
+                                   options, std::move(log), profile)) {}
 
 Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
              Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
-             std::function<void(const std::string&)> log)
+             std::function<void(const std::string&)> log, Profile* profile)
     : impl_(std::make_unique<Impl>(comm, snapshot, law, std::move(boundary), without_end(loading),
-                                   options, std::move(log))) {}
+                                   options, std::move(log), profile)) {}
 
 Model::~Model() = default;
 double Model::strain() const { return impl_->strain; }

@@ -13,6 +13,7 @@
 #include "mesh/snapshot.hpp"
 #include "solver/boundary.hpp"
 #include "solver/options.hpp"
+#include "solver/profile.hpp"
 
 namespace polyslip::solver {
 
@@ -34,15 +35,16 @@ class Model {
  public:
   /// From a snapshot with mesh and state fields (a fresh one, a remeshed one or a checkpoint).
   /// History in the snapshot, if there, is taken up; a stored partition is used if it was made for
-  /// the same number of ranks.
+  /// the same number of ranks. `profile`, if there is one, must outlive the model and books where
+  /// this rank's time goes.
   Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
         const LoadingOptions& loading, const SolverOptions& options,
-        std::function<void(const std::string&)> log);
+        std::function<void(const std::string&)> log, Profile* profile = nullptr);
   /// The same under another boundary than the deck's, as a function of its load's strain, and
   /// without an end.
   Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
         Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
-        std::function<void(const std::string&)> log);
+        std::function<void(const std::string&)> log, Profile* profile = nullptr);
   ~Model();
   Model(const Model&) = delete;
   Model& operator=(const Model&) = delete;

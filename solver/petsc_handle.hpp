@@ -73,6 +73,7 @@ using IsHandle = PetscHandle<IS, ISDestroy>;
 using ScatterHandle = PetscHandle<VecScatter, VecScatterDestroy>;
 using RandomHandle = PetscHandle<PetscRandom, PetscRandomDestroy>;
 using NullSpaceHandle = PetscHandle<MatNullSpace, MatNullSpaceDestroy>;
+using ViewerHandle = PetscHandle<PetscViewer, PetscViewerDestroy>;
 using PartitioningHandle = PetscHandle<MatPartitioning, MatPartitioningDestroy>;
 
 }  // namespace polyslip::solver

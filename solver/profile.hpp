@@ -2,6 +2,8 @@
 // Where the time of a run goes: CPU and wall seconds by stage, and the messages between ranks. For
 // reports only: nothing is decided by a clock.
 
+#include <mpi.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -27,8 +29,10 @@ class Profile {
     bytes_ += static_cast<std::int64_t>(bytes);
   }
   void count_reduction() { ++reductions_; }
+  /// From now on every stage is a stage of PETSc's log too (of the same name). PETSc must run.
+  void log_with_petsc();
   /// Forgets what has been booked; call outside of any stage.
-  void clear() { *this = {}; }
+  void clear();
 
  private:
   friend class Stage;
@@ -44,6 +48,7 @@ class Profile {
   std::vector<Open> open_;
   double cpu_ = 0, wall_ = 0;  // at the last change of stage
   std::int64_t messages_ = 0, bytes_ = 0, reductions_ = 0;
+  bool petsc_ = false;
 };
 
 /// Books the time until it goes out of scope; without a profile it does nothing. `stage`: a
@@ -62,5 +67,10 @@ class Stage {
  private:
   Profile* profile_;
 };
+
+/// A table of the stages over all ranks, and what was sent; on rank 0, empty elsewhere. Collective.
+std::string profile_text(const Profile& profile, MPI_Comm comm);
+/// PETSc's own log since `log_with_petsc` into a file: its events in each stage. Collective.
+void write_petsc_log(const std::string& path);
 
 }  // namespace polyslip::solver

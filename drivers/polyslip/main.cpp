@@ -51,6 +51,7 @@ int run(const Command& command) {
                          .folder = command.restart.empty() ? command.out : command.restart,
                          .overwrite = command.overwrite,
                          .restart = !command.restart.empty(),
+                         .profile = command.profile,
                          .jobs = command.jobs},
                         *pool);
   } catch (const core::InputError&) {

@@ -1,20 +1,19 @@
 #pragma once
-// A regularised and meshed random polycrystal, as the program makes them.
+// Regularised, meshed polycrystals of a wanted size, for benchmarks.
 
-#include "mesh/geometry.hpp"
+#include <cstdint>
+
+#include "mesh/mesh.hpp"
+#include "mesh/volume_mesher.hpp"
 
 namespace polyslip::tests {
 
-/// A cube of `grains` grains of unit mean volume; element_size: c_l.
-inline mesh::Mesh polycrystal_mesh(mesh::MesherPool& pool, int grains, double element_size) {
-  mesh::PolycrystalOptions p;
-  p.grains = grains;
-  auto tessellation = mesh::voronoi_tessellation(p);
-  mesh::regularise(tessellation, {});
-  mesh::MeshingOptions options;
-  options.element_size = element_size;
-  mesh::MeshingReport report;
-  return mesh::mesh_geometry(mesh::geometry_of(tessellation), options, {1, 1, 1}, pool, report);
-}
+/// A cube of Voronoi grains of unit volume in all, regularised with the default options; quadratic
+/// tetrahedra, element_size for grains of unit mean volume.
+mesh::Mesh polycrystal_mesh(mesh::MesherPool& pool, int grains, double element_size,
+                            std::uint64_t seed = 1);
+
+/// Number of grains that gives about so many elements.
+int grains_for(double elements, double element_size);
 
 }  // namespace polyslip::tests

@@ -20,7 +20,7 @@ class Outputs : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     sandbox_ = std::make_unique<Sandbox>();
-    run_deck(*sandbox_, 2, small_deck(), "run");
+    run_deck(*sandbox_, 2, small_deck(), "run", {"--profile"});
   }
   static void TearDownTestSuite() { sandbox_.reset(); }
   static fs::path folder() { return sandbox_->path(); }
@@ -186,6 +186,14 @@ TEST_F(Outputs, SummaryTellsTheCpuTimeOfEachStage) {
   EXPECT_GT(s["cpu_s"]["deformation"], s["cpu_s"]["polycrystal"]);
   EXPECT_GT(s["cpu_s"]["meshing"], s["cpu_s"]["polycrystal"]);
   EXPECT_LT(sum, 4 * s["wall_s"].get<double>());  // two ranks and, while meshing, workers
+}
+
+TEST_F(Outputs, ProfileTellsTheTimeOfTheSolversStages) {
+  const std::string text = slurp(run() / "profile.txt");
+  for (const char* stage : {"material", "smoother", "vertex level", "exchange of nodes"})
+    EXPECT_NE(text.find(stage), std::string::npos) << stage << '\n' << text;
+  EXPECT_NE(text.find("between the 2 ranks"), std::string::npos) << text;
+  EXPECT_NE(slurp(run() / "profile-petsc.txt").find("smoother"), std::string::npos);
 }
 
 TEST_F(Outputs, PictureIsAPng) {

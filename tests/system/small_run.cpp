@@ -136,11 +136,12 @@ void expect_identical(const mesh::Snapshot& a, const mesh::Snapshot& b) {
   }
 }
 
-void run_deck(const Sandbox& sandbox, int ranks, const std::string& deck,
-              const std::string& folder) {
+void run_deck(const Sandbox& sandbox, int ranks, const std::string& deck, const std::string& folder,
+              const std::vector<std::string>& options) {
   sandbox.write(folder + ".toml", deck);
-  const Outcome outcome =
-      run_program(on_ranks(ranks, {"run", folder + ".toml", "--out", folder}), sandbox.path());
+  std::vector<std::string> arguments{"run", folder + ".toml", "--out", folder};
+  arguments.insert(arguments.end(), options.begin(), options.end());
+  const Outcome outcome = run_program(on_ranks(ranks, arguments), sandbox.path());
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
 }
 

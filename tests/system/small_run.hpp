@@ -46,8 +46,9 @@ std::size_t state_count(const std::filesystem::path& run);
 /// Mesh, fields, history, time and strain are the same, bit for bit.
 void expect_identical(const mesh::Snapshot& a, const mesh::Snapshot& b);
 
-/// Runs a deck in the sandbox to its end, into `folder`, and expects that to go well.
-void run_deck(const Sandbox& sandbox, int ranks, const std::string& deck,
-              const std::string& folder);
+/// Runs a deck in the sandbox to its end, into `folder`, with further options of the command line,
+/// and expects that to go well.
+void run_deck(const Sandbox& sandbox, int ranks, const std::string& deck, const std::string& folder,
+              const std::vector<std::string>& options = {});
 
 }  // namespace polyslip::tests
