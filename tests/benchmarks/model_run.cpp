@@ -149,6 +149,7 @@ void run(const Request& r, const mesh::Snapshot& start, const material::CrystalL
     profile.clear();
     for (int i = 0; i < r.steps; ++i) all.push_back(step(model, 1));
   }
+  if (all.empty()) return;
   const double memory = solver::sum(MPI_COMM_WORLD, core::peak_rss_mb());
   if (tests::on_root(MPI_COMM_WORLD)) print_summary(all, elements, memory);
   const std::string times = solver::profile_text(profile, MPI_COMM_WORLD);
