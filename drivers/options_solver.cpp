@@ -44,13 +44,19 @@ solver::SolverOptions read_solver(Deck& deck) {
   o.newton_tolerance = tolerance(
       "newton_tolerance", o.newton_tolerance,
       "A step has converged when the forces out of balance at free nodes are this small "
-      "relative to the reactions at prescribed ones (2-norms), their sums and first moments "
+      "relative to the reactions at prescribed ones (root mean squares), their sums and first "
+      "moments "
       "relative to the largest face force, and the volumes' mismatch (rms of ln(V/V0) - p/K) "
       "relative to the strain increment.");
+  o.velocity_tolerance =
+      tolerance("velocity_tolerance", o.velocity_tolerance,
+                "... and when the last Newton iteration moved the nodes by no more than this, "
+                "relative to their displacements in the step (2-norms).");
   o.linear_tolerance =
       tolerance("linear_tolerance", o.linear_tolerance,
                 "A linear solve ends when the 2-norm of its residual is this small relative to the "
-                "2-norm of its right side.");
+                "2-norm of its right side; or up to ten times this where Newton's method would "
+                "gain nothing by more.");
   o.max_newton_iterations = count("max_newton_iterations", o.max_newton_iterations,
                                   "Newton iterations of a step; beyond them the step is cut.");
   o.max_linear_iterations = count("max_linear_iterations", o.max_linear_iterations,

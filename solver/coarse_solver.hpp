@@ -15,7 +15,7 @@ class CoarseSolver {
  public:
   struct Settings {
     PetscInt max_direct_dofs = 1000;  ///< LU up to this size
-    int iterations = 4;               ///< of GMRES; with 1 a single cycle is taken
+    int iterations = 2;               ///< of GMRES; with 1 a single cycle is taken
     int prolongation_smoothings = 1;  ///< of the aggregates' rigid-body modes
     int aggressive_levels = 10;       ///< finest levels that aggregate neighbours of neighbours
     double threshold = 0.01;          ///< relative size of the couplings dropped when aggregating

@@ -37,11 +37,14 @@ struct NewtonReport {
 
 /// Newton's method on forces and volumes. Converged means, with t = newton_tolerance and F the
 /// largest face force,
-///   |r_free|_2 <= t |reactions|_2,
+///   rms(r_free) <= t rms(reactions), root mean squares over the free and over the prescribed dofs,
 ///   |sum r_free| <= t F and |sum x_i r_free_i| <= t F L for each direction (L = V^(1/3)),
 ///   the same force on each planar face but for its mean traction,
 ///   rms over the volume of ln(V/V0) - p/K <= t |strain increment|,
-/// every point converged, no element inverted. Scales never fall below those of a stress of 1e-6
+///   |last increment of Newton|_2 <= velocity_tolerance |displacement in the step|_2, which a
+///   predictor that meets all others is not asked for,
+/// every point converged, no element inverted. The linear systems are solved as well as pays: see
+/// `forcing`. Scales never fall below those of a stress of 1e-6
 /// times the shear modulus.
 class NewtonSolver {
  public:
@@ -71,19 +74,29 @@ class NewtonSolver {
   std::vector<double> increment_, pressure_increment_;
   std::vector<double> planar_residual_, planar_increment_;  // of each planar face
   double length_ = 0, floor_force_ = 0;
+  double moved_ = 0;  // |last increment| / |displacement in the step|; 0 before the first
 
   void update_residual(const NewtonProblem& problem, const std::vector<double>& x);
   Balance measure(const std::vector<double>& x) const;
   /// The criteria on forces alone.
   bool balanced(const Balance& balance) const;
   bool converged(const Balance& balance, const NewtonProblem& problem) const;
-  bool solve_linear(NewtonReport& report);
+  /// rms of the free forces relative to what it may be.
+  double excess(const Balance& balance) const;
+  /// Tolerance of the next linear solve, `gain` being what the last iteration made of the forces
+  /// (1 before the first).
+  double forcing(const Balance& balance, double gain) const;
+  bool solve_linear(double tolerance, NewtonReport& report);
   /// Solves for increments with these right sides: forces on free dofs, volumes of elements.
-  bool solve_system(const std::vector<double>& forces, const std::vector<double>& volumes,
-                    std::vector<double>& u, std::vector<double>& p, NewtonReport& report);
+  bool solve_system(double tolerance, const std::vector<double>& forces,
+                    const std::vector<double>& volumes, std::vector<double>& u,
+                    std::vector<double>& p, NewtonReport& report);
   /// Adds to the increment what the planar faces' own unknowns do.
   bool add_planar(NewtonReport& report);
   double conjugate_residual() const;
+  /// |x - x0| / |x - old| over this body. Collective.
+  double relative_move(const std::vector<double>& x, const std::vector<double>& x0,
+                       const std::vector<double>& old) const;
   /// Evaluates x0 + lambda * increment; false, with the reason, if that cannot be done.
   bool try_increment(const NewtonProblem& problem, double lambda, const std::vector<double>& x0,
                      const std::vector<double>& p0, std::vector<double>& x, std::vector<double>& p,

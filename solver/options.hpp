@@ -60,6 +60,7 @@ struct SolverOptions {
       "mixed";                ///< "mixed" (T10/P0), "displacement" or its "displacement-straight"
   int quadrature_points = 4;  ///< of an element: 4, 8, 14 or 15
   double newton_tolerance = 1e-3;
+  double velocity_tolerance = 1e-3;
   int max_newton_iterations = 20;
   double linear_tolerance = 1e-2;
   int max_linear_iterations = 200;

@@ -28,12 +28,13 @@ Balance balance(const LocalMesh& local, const Boundary& boundary,
                 const std::vector<double>& x, const std::vector<double>& volumes,
                 const std::vector<double>& volume_gap) {
   Balance b;
-  std::array<double, 10> s{};  // free^2, reaction^2, resultant, moment, V gap^2, V
+  std::array<double, 12> s{};  // free^2, reaction^2, resultant, moment, V gap^2, V, dofs
   for (int n = 0; n < local.owned_nodes; ++n)
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t dof = 3 * static_cast<std::size_t>(n) + i;
       const double r = forces[dof];
       s[constrained[dof] ? 1 : 0] += r * r;
+      s[constrained[dof] ? 11 : 10] += 1;
       if (constrained[dof]) continue;
       s[2 + i] += r;
       s[5 + i] += x[dof] * r;
@@ -42,9 +43,11 @@ Balance balance(const LocalMesh& local, const Boundary& boundary,
     s[8] += volumes[e] * volume_gap[e] * volume_gap[e];
     s[9] += volumes[e];
   }
-  sum(local.comm, s.data(), 10);
+  sum(local.comm, s.data(), 12);
   b.free_norm = std::sqrt(s[0]);
   b.reaction_norm = std::sqrt(s[1]);
+  b.free_dofs = s[10];
+  b.reaction_dofs = s[11];
   b.resultant = {s[2], s[3], s[4]};
   b.moment = {s[5], s[6], s[7]};
   b.volume_gap = std::sqrt(s[8] / s[9]);

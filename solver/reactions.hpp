@@ -21,11 +21,12 @@ FaceForces face_forces(const LocalMesh& local, const Boundary& boundary,
 
 /// Imbalance of a configuration.
 struct Balance {
-  double free_norm = 0;               ///< 2-norm of the forces on free dofs
-  double reaction_norm = 0;           ///< 2-norm of the forces on prescribed dofs
-  std::array<double, 3> resultant{};  ///< sum of the forces on free dofs
-  std::array<double, 3> moment{};     ///< sum of x_i f_i of free dofs: volume times the error
-                                      ///< that they make in the mean stress
+  double free_norm = 0;                     ///< 2-norm of the forces on free dofs
+  double reaction_norm = 0;                 ///< 2-norm of the forces on prescribed dofs
+  double free_dofs = 0, reaction_dofs = 0;  ///< how many of either there are
+  std::array<double, 3> resultant{};        ///< sum of the forces on free dofs
+  std::array<double, 3> moment{};           ///< sum of x_i f_i of free dofs: volume times the error
+                                            ///< that they make in the mean stress
   double largest_face_force = 0;
   double volume_gap = 0;  ///< volume-weighted rms of ln(V/V0) - p/K
 };
