@@ -134,7 +134,7 @@ std::vector<double> place(const std::vector<std::vector<double>>& parts,
 
 }  // namespace
 
-std::vector<int> partition_elements(const mesh::Mesh& mesh, int ranks) {
+std::vector<int> bisect_elements(const mesh::Mesh& mesh, int ranks) {
   const int n = mesh.element_count();
   std::vector<core::Vec3> centroids(n);
   for (int e = 0; e < n; ++e) {

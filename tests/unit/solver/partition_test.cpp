@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "core/error.hpp"
@@ -14,11 +15,41 @@ namespace {
 
 mesh::Mesh box() { return tests::box_mesh({4, 3, 2}, {2, 1.5, 1}, 2); }
 
-TEST(Partition, PartsAreBalancedAndAFunctionOfTheMesh) {
-  const mesh::Mesh m = box();
+/// Faces between elements of different parts.
+int cut_faces(const mesh::Mesh& m, const std::vector<int>& parts) {
+  std::map<std::set<int>, int> seen;
+  int cut = 0;
+  for (int e = 0; e < m.element_count(); ++e)
+    for (int out = 0; out < 4; ++out) {
+      std::set<int> face;
+      for (int a = 0; a < 4; ++a)
+        if (a != out) face.insert(m.tetrahedra[e][a]);
+      const auto [at, first] = seen.try_emplace(face, e);
+      if (!first && parts[at->second] != parts[e]) ++cut;
+    }
+  return cut;
+}
+
+TEST(Partition, GraphIsCutInBalancedPartsWithFewFacesBetween) {
+  const mesh::Mesh m = tests::box_mesh({9, 8, 7}, {2, 1.5, 1}, 2);
   for (int ranks : {1, 2, 3, 5}) {
     const auto parts = partition_elements(m, ranks);
     ASSERT_EQ(parts, partition_elements(m, ranks));
+    ASSERT_EQ(static_cast<int>(parts.size()), m.element_count());
+    for (int r = 0; r < ranks; ++r) {
+      const double n = static_cast<double>(std::count(parts.begin(), parts.end(), r));
+      EXPECT_NEAR(n * ranks / m.element_count(), 1, 0.05) << r << " of " << ranks;
+    }
+    EXPECT_LE(cut_faces(m, parts), 1.1 * cut_faces(m, bisect_elements(m, ranks))) << ranks;
+  }
+}
+
+TEST(Partition, BisectedPartsAreBalancedAndAFunctionOfTheMesh) {
+  const mesh::Mesh m = box();
+  for (int ranks : {1, 2, 3, 5}) {
+    const auto parts = bisect_elements(m, ranks);
+    ASSERT_EQ(parts, bisect_elements(m, ranks));
+    ASSERT_EQ(parts, partition_elements(m, ranks)) << "few elements a rank";
     ASSERT_EQ(static_cast<int>(parts.size()), m.element_count());
     for (int r = 0; r < ranks; ++r) {
       const auto n = std::count(parts.begin(), parts.end(), r);
