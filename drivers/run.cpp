@@ -135,12 +135,12 @@ mesh::Snapshot RunJob::begin() {
   return snapshot;
 }
 
-void RunJob::build_model(const mesh::Snapshot& snapshot) {
+void RunJob::build_model(mesh::Snapshot snapshot) {
   model_.reset();  // not two at a time
-  model_ = std::make_unique<solver::Model>(
-      comm_, snapshot, *law_, options_.loading, options_.solver,
-      [this](const std::string& line) { log_.info(line); }, request_.profile ? &profile_ : nullptr);
   watch(snapshot);
+  model_ = std::make_unique<solver::Model>(
+      comm_, std::move(snapshot), *law_, options_.loading, options_.solver,
+      [this](const std::string& line) { log_.info(line); }, request_.profile ? &profile_ : nullptr);
 }
 
 void RunJob::write_profile() {
@@ -186,8 +186,7 @@ void RunJob::stop(const std::string& reason) {
 
 /// The model, and what a run that was killed in a remeshing has still to do.
 void RunJob::start() {
-  const mesh::Snapshot snapshot = begin();
-  build_model(snapshot);
+  build_model(begin());
   if (model_->strain() == 0 && progress_.states == 0) {
     measure_new_mesh();
     store(model_->snapshot());
@@ -195,7 +194,7 @@ void RunJob::start() {
   strain_start_ = model_->strain();
   if (progress_.due) {
     log_.info("a remeshing is due: {}", progress_.due.reason);
-    if (remesh(snapshot)) arrive();
+    if (remesh(model_->snapshot())) arrive();
   }
 }
 

@@ -41,7 +41,7 @@ class RunJob {
   mesh::Snapshot begin();
   mesh::Snapshot begin_anew();
   mesh::Snapshot take_up(const results::CheckpointFile& file);
-  void build_model(const mesh::Snapshot& snapshot);
+  void build_model(mesh::Snapshot snapshot);
   void start();
 
   // run.cpp: the end

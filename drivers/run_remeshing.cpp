@@ -69,8 +69,7 @@ bool RunJob::remesh(const mesh::Snapshot& old) {
 /// folder.
 void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const mesh::Snapshot& old) {
   remap::RemeshReport report;
-  const mesh::Snapshot fresh = new_mesh(attempt, old, report);
-  build_model(fresh);
+  build_model(new_mesh(attempt, old, report));
   measure_new_mesh();
   const mesh::Snapshot start = model_->snapshot();
   const auto first = [&] {

@@ -70,7 +70,7 @@ struct Model::Impl {
   std::unique_ptr<Discretisation> discretisation;
   std::unique_ptr<NewtonSolver> newton;
 
-  Impl(MPI_Comm c, const mesh::Snapshot& snapshot, const material::CrystalLaw& l, Boundary b,
+  Impl(MPI_Comm c, mesh::Snapshot snapshot, const material::CrystalLaw& l, Boundary b,
        const LoadingOptions& load, const SolverOptions& options,
        std::function<void(const std::string&)> log_line, Profile* times)
       : comm(c),
@@ -82,7 +82,7 @@ struct Model::Impl {
         mixed(options.element == "mixed"),
         rule(point_rule(options.quadrature_points, options.element == "displacement-straight")),
         profile(times),
-        base(checked(snapshot)),
+        base(checked(std::move(snapshot))),
         ranks(root ? element_ranks(base, size_of(c)) : std::vector<int>{}),
         distribution(c, base.mesh, ranks),
         exchange(distribution.local(), profile),
@@ -101,12 +101,18 @@ struct Model::Impl {
                                          read(field::reference_volume, Location::element, 1));
     if (volumes.empty()) volumes = discretisation->reference_volumes();
     newton = std::make_unique<NewtonSolver>(*discretisation, boundary, options, now.x);
+    release_fields();
   }
 
   /// The snapshot on rank 0, after a check that every rank hears of.
-  mesh::Snapshot checked(const mesh::Snapshot& snapshot) const {
+  mesh::Snapshot checked(mesh::Snapshot snapshot) const {
     on_root(comm, [&] { check_fields(snapshot, law, rule.points); });
-    return root ? snapshot : mesh::Snapshot{};
+    return root ? std::move(snapshot) : mesh::Snapshot{};
+  }
+
+  /// Drops the fields that the ranks have now, each its part, and that `snapshot` gathers again.
+  void release_fields() {
+    std::erase_if(base.fields, [&](const mesh::Field& f) { return is_of_model(f, law); });
   }
 
   /// A field of the snapshot on this rank's entities; empty, on every rank, if there is none.
@@ -423,18 +429,19 @@ LoadingOptions without_end(LoadingOptions loading) {
 
 }  // namespace
 
-Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+Model::Model(MPI_Comm comm, mesh::Snapshot snapshot, const material::CrystalLaw& law,
              const LoadingOptions& loading, const SolverOptions& options,
-             std::function<void(const std::string&)> log, Profile* profile)
-    : impl_(std::make_unique<Impl>(comm, snapshot, law,
-                                   make_boundary(loading, box_size(comm, snapshot)), loading,
-                                   options, std::move(log), profile)) {}
+             std::function<void(const std::string&)> log, Profile* profile) {
+  Boundary boundary = make_boundary(loading, box_size(comm, snapshot));
+  impl_ = std::make_unique<Impl>(comm, std::move(snapshot), law, std::move(boundary), loading,
+                                 options, std::move(log), profile);
+}
 
-Model::Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+Model::Model(MPI_Comm comm, mesh::Snapshot snapshot, const material::CrystalLaw& law,
              Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
              std::function<void(const std::string&)> log, Profile* profile)
-    : impl_(std::make_unique<Impl>(comm, snapshot, law, std::move(boundary), without_end(loading),
-                                   options, std::move(log), profile)) {}
+    : impl_(std::make_unique<Impl>(comm, std::move(snapshot), law, std::move(boundary),
+                                   without_end(loading), options, std::move(log), profile)) {}
 
 Model::~Model() = default;
 double Model::strain() const { return impl_->strain; }

@@ -30,20 +30,21 @@ struct StepRecord {
   double min_jacobian_ratio = 1;                       ///< worst element: min det J / mean det J
 };
 
-/// Collective throughout. The snapshot lives on rank 0 (others pass anything).
+/// Collective throughout. Snapshots live on rank 0 (others pass anything). Between two of them no
+/// rank holds a field of the whole body; rank 0 keeps the mesh as it was at the start.
 class Model {
  public:
   /// From a snapshot with mesh and state fields (a fresh one, a remeshed one or a checkpoint).
   /// History in the snapshot, if there, is taken up; a stored partition is used if it was made for
   /// the same number of ranks. `profile`, if there is one, must outlive the model and books where
   /// this rank's time goes.
-  Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
+  Model(MPI_Comm comm, mesh::Snapshot snapshot, const material::CrystalLaw& law,
         const LoadingOptions& loading, const SolverOptions& options,
         std::function<void(const std::string&)> log, Profile* profile = nullptr);
   /// The same under another boundary than the deck's, as a function of its load's strain, and
   /// without an end.
-  Model(MPI_Comm comm, const mesh::Snapshot& snapshot, const material::CrystalLaw& law,
-        Boundary boundary, const LoadingOptions& loading, const SolverOptions& options,
+  Model(MPI_Comm comm, mesh::Snapshot snapshot, const material::CrystalLaw& law, Boundary boundary,
+        const LoadingOptions& loading, const SolverOptions& options,
         std::function<void(const std::string&)> log, Profile* profile = nullptr);
   ~Model();
   Model(const Model&) = delete;

@@ -13,9 +13,9 @@
 
 namespace polyslip::solver {
 
-/// Rank of each element, on this rank alone: PT-Scotch, through PETSc, on the graph of elements that
-/// share a face, which keeps small what neighbours exchange. A function of mesh and number of ranks
-/// alone. Every rank has an element if there are enough.
+/// Rank of each element, on this rank alone: PT-Scotch, through PETSc, on the graph of elements
+/// that share a face, which keeps small what neighbours exchange. A function of mesh and number of
+/// ranks alone. Every rank has an element if there are enough.
 std::vector<int> partition_elements(const mesh::Mesh& mesh, int ranks);
 /// The same by recursive bisection of the elements' centroids across the longest side of their box,
 /// ties by element number: balanced to one element. For meshes of few elements a rank.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "core/error.hpp"
 
@@ -89,6 +90,19 @@ std::vector<double> drop_filling(const std::vector<double>& values, const PointR
   for (auto at = values.begin(); at != values.end(); at += rule.slots)
     out.insert(out.end(), at, at + rule.points);
   return out;
+}
+
+bool is_of_model(const mesh::Field& f, const material::CrystalLaw& law) {
+  const auto is = [&](Location location, std::initializer_list<std::string> names) {
+    return f.location == location && std::find(names.begin(), names.end(), f.name) != names.end();
+  };
+  const auto& state = law.layout().fields;
+  return is(Location::node, {field::displacement, field::rate, field::previous_rate}) ||
+         is(Location::element, {field::reference_volume, field::volume, field::cauchy_stress,
+                                field::pressure, field::partition, field::pressure_rate}) ||
+         is(Location::quadrature_point, {field::cauchy_stress, field::volume_ratio}) ||
+         (f.location == Location::quadrature_point &&
+          std::any_of(state.begin(), state.end(), [&](const auto& s) { return s.name == f.name; }));
 }
 
 void put(mesh::Snapshot& snapshot, mesh::Field field) {

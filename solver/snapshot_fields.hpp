@@ -41,6 +41,9 @@ std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material:
 std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string& name,
                               mesh::Location location);
 
+/// Whether the model makes this field anew for every snapshot.
+bool is_of_model(const mesh::Field& field, const material::CrystalLaw& law);
+
 /// Replaces the field of that name and location, or adds it.
 void put(mesh::Snapshot& snapshot, mesh::Field field);
 

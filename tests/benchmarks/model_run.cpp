@@ -130,13 +130,12 @@ mesh::Snapshot begin(const Request& r, mesh::MesherPool& pool, const material::C
                                   tests::some_orientations(grains), law);
 }
 
-void run(const Request& r, const mesh::Snapshot& start, const material::CrystalLaw& law,
-         int elements) {
+void run(const Request& r, mesh::Snapshot start, const material::CrystalLaw& law, int elements) {
   solver::LoadingOptions loading;
   loading.max_strain_increment = r.increment;
   const auto log = [](const std::string& line) { fmt::print("{}\n", line); };
   solver::Profile profile;
-  solver::Model model(MPI_COMM_WORLD, start, law, loading, r.solver, log, &profile);
+  solver::Model model(MPI_COMM_WORLD, std::move(start), law, loading, r.solver, log, &profile);
   std::vector<Measured> all;
   if (r.to_strain > 0) {
     while (model.strain() < r.to_strain - 1e-9) all.push_back(step(model, r.to_strain));
@@ -194,6 +193,6 @@ int main(int argc, char** argv) {
                law->bulk_modulus());
   }
   elements = solver::broadcast(MPI_COMM_WORLD, elements);
-  run(r, start, *law, elements);
+  run(r, std::move(start), *law, elements);
   return 0;
 }
