@@ -91,13 +91,12 @@ class Cube {
           const auto slab = [&](int c) { return std::min(o.grains - 1, c * o.grains / cells_); };
           for (const auto& path : paths) {
             add({2 * x, 2 * y, 2 * z}, path);
-            grain_.push_back(slab(x) + o.grains * (slab(y) + o.grains * slab(z)));
+            mesh_.tetrahedron_cell.push_back(slab(x) + o.grains * (slab(y) + o.grains * slab(z)));
           }
         }
     for (int n = 0; n < side_ * side_ * side_; ++n) mesh_.nodes.push_back(position(n));
   }
   const mesh::Mesh& mesh() const { return mesh_; }
-  int grain(int element) const { return grain_[element]; }
   Vec3 position(int node) const {
     return Vec3(node % side_, node / side_ % side_, node / side_ / side_) / (side_ - 1);
   }
@@ -122,7 +121,6 @@ class Cube {
   }
 
   int cells_, side_;
-  std::vector<int> grain_;
   mesh::Mesh mesh_;
 };
 
@@ -221,11 +219,15 @@ void set_scalars(LinearProblem& p, int e, double mu, std::uint64_t random,
 }  // namespace
 
 LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) {
-  const Cube cube(o);
+  return make_linear_problem(comm, o, Cube(o).mesh());
+}
+
+LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o,
+                                  const mesh::Mesh& cube) {
   const int ranks = solver::size_of(comm), busy = std::max(1, ranks - o.idle_ranks);
   LinearProblem p;
-  p.mesh = std::make_unique<solver::Distribution>(comm, cube.mesh(),
-                                                  solver::partition_elements(cube.mesh(), busy));
+  p.mesh =
+      std::make_unique<solver::Distribution>(comm, cube, solver::partition_elements(cube, busy));
   const solver::LocalMesh& local = p.mesh->local();
   p.exchange = std::make_unique<solver::NodeExchange>(local);
   p.layout.local = &local;
@@ -234,14 +236,15 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
   p.layout.rule = &solver::point_rule(o.points, o.straight);
   std::vector<double> lift;
   for (int n : local.node_mesh) {
-    const Vec3 x = cube.position(n);
+    const Vec3& x = cube.nodes[n];
     p.x.insert(p.x.end(), x.data(), x.data() + 3);
     for (int a = 0; a < 3; ++a) p.layout.constrained.push_back(fixed(x.data(), a));
     lift.insert(lift.end(), {0, 0, x[2] > 1 - 1e-9 ? -0.01 : 0});
   }
   p.layout.coordinates.assign(p.x.begin(), p.x.begin() + 3 * local.owned_nodes);
 
-  std::vector<GrainTangent> grains(o.grains * o.grains * o.grains);
+  std::vector<GrainTangent> grains(
+      1 + *std::max_element(cube.tetrahedron_cell.begin(), cube.tetrahedron_cell.end()));
   std::uint64_t state = o.seed;
   double mean_mu = 0;
   for (auto& grain : grains) {
@@ -258,7 +261,7 @@ LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& o) 
   for (auto* v : {&p.scale, &p.C, &p.W, &p.schur}) v->resize(n);
   for (std::size_t e = 0; e < n; ++e) {
     const int number = local.element_mesh[e];
-    const GrainTangent& grain = grains[cube.grain(number)];
+    const GrainTangent& grain = grains[cube.tetrahedron_cell[number]];
     std::uint64_t own = o.seed + 1000003u * static_cast<std::uint64_t>(number);
     const double factor = std::exp(0.6 * (uniform(own) - 0.5));
     set_points(p, e, own, factor * grain.tangent, o);

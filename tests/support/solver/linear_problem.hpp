@@ -58,4 +58,8 @@ struct LinearProblem {
 /// Collective over `comm`; the same system for any number of ranks, but for rounding.
 LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& options);
 
+/// The same on a mesh of a unit cube, known to every rank, with a tangent for each of its grains.
+LinearProblem make_linear_problem(MPI_Comm comm, const LinearProblemOptions& options,
+                                  const mesh::Mesh& cube);
+
 }  // namespace polyslip::test
