@@ -205,7 +205,49 @@ void read_wear(Deck::Table& t, remap::RemeshingOptions& o) {
       {.fallback = o.min_interval,
        .min = 0,
        .max = 10,
-       .help = "No worn elements are looked for within this strain of the last remeshing."});
+       .help =
+           "No worn elements are looked for within this strain after a remeshing, or before one of "
+           "at_strains."});
+}
+
+void read_transport(Deck::Table& t, remap::RemeshingOptions& o) {
+  o.transport.state = t.text(
+      "transport",
+      {.fallback = o.transport.state,
+       .choices = {"element", "point", "corrected"},
+       .help =
+           "How the state goes to the new mesh, within each grain. element: the mean of the old "
+           "element that holds a new one's centroid (the paper); point: for each quadrature "
+           "point, the nearest point of the old element that holds it; corrected: the same, and "
+           "each grain gets its mean orientation, its spread and its mean g and slip back."});
+  o.transport.stress = t.text(
+      "stress", {.fallback = o.transport.stress,
+                 .choices = {"zero", "carried"},
+                 .help = "Stresses after a remeshing: zero (the paper), or carried over like the "
+                         "state and brought to equilibrium with the boundary held."});
+  o.max_grain_rotation = t.number(
+      "max_grain_rotation", {.unit = "degrees",
+                             .fallback = o.max_grain_rotation,
+                             .min = 0,
+                             .exclusive_min = true,
+                             .max = 180,
+                             .help = "Largest rotation of a grain's mean orientation by a "
+                                     "remeshing; beyond it the run stops and names the grain."});
+  o.max_grain_spread_change =
+      t.number("max_grain_spread_change",
+               {.unit = "degrees",
+                .fallback = o.max_grain_spread_change,
+                .min = 0,
+                .exclusive_min = true,
+                .max = 180,
+                .help = "Likewise of a grain's spread, the mean angle from its mean orientation."});
+  o.max_grain_g_change =
+      t.number("max_grain_g_change", {.fallback = o.max_grain_g_change,
+                                      .min = 0,
+                                      .exclusive_min = true,
+                                      .max = 1,
+                                      .help = "Likewise of a grain's mean slip resistance g, "
+                                              "relative."});
 }
 
 remap::RemeshingOptions read_remeshing(Deck& deck) {
@@ -230,6 +272,7 @@ remap::RemeshingOptions read_remeshing(Deck& deck) {
        .max = 1,
        .help = "Share of the shortening that element sizes follow: 1 keeps the number of elements "
                "across a direction in which the polycrystal was compressed, 0 keeps their size."});
+  read_transport(t, o);
   o.max_grain_volume_change = t.number("max_grain_volume_change",
                                        {.fallback = o.max_grain_volume_change,
                                         .min = 0,

@@ -22,6 +22,11 @@ std::vector<RemeshingAttempt> remeshing_attempts(const Options& options) {
   std::vector<RemeshingAttempt> attempts{{"as the deck says", options.mesh, options.remeshing}};
 
   RemeshingAttempt next = attempts.back();
+  if (next.remeshing.transport.stress != "zero") {
+    next.what = "with stresses zero";
+    next.remeshing.transport.stress = "zero";
+    attempts.push_back(next);
+  }
   next.what = "every mesher on every grain";
   next.meshing.mesher_target = 1;
   auto& meshers = next.meshing.meshers;
@@ -34,7 +39,7 @@ std::vector<RemeshingAttempt> remeshing_attempts(const Options& options) {
   scale_sizes(next.meshing, smaller);
   attempts.push_back(next);
 
-  next = attempts[1];
+  next = *std::prev(attempts.end(), 2);
   next.remeshing.orthotropic_share /= 2;
   if (next.remeshing.orthotropic_share > 0) {
     next.what =

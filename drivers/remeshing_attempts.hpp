@@ -14,8 +14,9 @@ struct RemeshingAttempt {
   remap::RemeshingOptions remeshing;
 };
 
-/// First as the deck says; then every mesher on every grain; then these with smaller elements; then
-/// with sizes that follow the shortening half as far as the deck says.
+/// First as the deck says; then, if stresses are carried, with stresses zero; then every mesher on
+/// every grain; then these with smaller elements; then with sizes that follow the shortening half
+/// as far as the deck says.
 std::vector<RemeshingAttempt> remeshing_attempts(const Options& options);
 
 }  // namespace polyslip::drivers

@@ -94,10 +94,19 @@ Event RunJob::event_here() const {
   return event;
 }
 
+/// Whether the deck asks for a remeshing so soon that worn elements can wait for it.
+bool RunJob::asked_for_soon() const {
+  for (const double strain : options_.remeshing.at_strains)
+    if (strain > model_->strain() && strain < model_->strain() + options_.remeshing.min_interval)
+      return true;
+  return false;
+}
+
 DueRemeshing RunJob::due_here(const Event& event) {
   if (model_->finished()) return {};
   if (event.remesh && progress_.last_attempt + same_strain < event.strain)
     return {at_strains, fmt::format("the deck asks for it at strain {:g}", event.strain)};
+  if (asked_for_soon()) return {};
   if (const std::string reason = worn_elements(); !reason.empty()) return {worn_out, reason};
   return {};
 }

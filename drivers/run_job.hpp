@@ -60,6 +60,7 @@ class RunJob {
   /// Stores, writes checkpoints and remeshes, as is due at this strain.
   void arrive();
   Event event_here() const;
+  bool asked_for_soon() const;
   DueRemeshing due_here(const Event& event);
   void store(const mesh::Snapshot& snapshot);
   bool stored_here() const;
@@ -80,7 +81,7 @@ class RunJob {
   void try_remeshing(const RemeshingAttempt& attempt, int number, const mesh::Snapshot& old);
   mesh::Snapshot new_mesh(const RemeshingAttempt& attempt, const mesh::Snapshot& old,
                           remap::RemeshReport& report);
-  void keep_old_mesh(const mesh::Snapshot& old, const std::string& reason);
+  void keep_old_mesh(const mesh::Snapshot& old, const std::string& reason, bool beyond_limits);
 
   MPI_Comm comm_;
   int rank_ = 0;

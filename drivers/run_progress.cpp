@@ -9,37 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const results::RemeshingSummary& r) {
-  json j{{"strain", r.strain},
-         {"elements_before", r.elements_before},
-         {"elements_after", r.elements_after},
-         {"min_radius_ratio_before", r.min_radius_ratio_before},
-         {"min_radius_ratio_after", r.min_radius_ratio_after},
-         {"max_grain_volume_change", r.max_grain_volume_change},
-         {"trigger", r.trigger},
-         {"reason", r.reason},
-         {"attempts", r.attempts},
-         {"copied_faces", r.copied_faces}};
-  if (r.strain_to_reload) j["strain_to_reload"] = *r.strain_to_reload;
-  return j;
-}
-
-results::RemeshingSummary remeshing_from(const json& j) {
-  results::RemeshingSummary r;
-  j.at("strain").get_to(r.strain);
-  j.at("elements_before").get_to(r.elements_before);
-  j.at("elements_after").get_to(r.elements_after);
-  j.at("min_radius_ratio_before").get_to(r.min_radius_ratio_before);
-  j.at("min_radius_ratio_after").get_to(r.min_radius_ratio_after);
-  j.at("max_grain_volume_change").get_to(r.max_grain_volume_change);
-  j.at("trigger").get_to(r.trigger);
-  j.at("reason").get_to(r.reason);
-  j.at("attempts").get_to(r.attempts);
-  j.at("copied_faces").get_to(r.copied_faces);
-  if (j.contains("strain_to_reload")) r.strain_to_reload = j.at("strain_to_reload").get<double>();
-  return r;
-}
-
 }  // namespace
 
 void RunProgress::add(const solver::StepRecord& step) {
@@ -47,10 +16,13 @@ void RunProgress::add(const solver::StepRecord& step) {
   cuts += step.cuts;
   newton_iterations += step.newton_iterations;
   linear_iterations += step.linear_iterations;
+  const double now = von_mises(step.stress);
+  if (step.step_size > 0) slope = (now - von_mises(stress)) / step.step_size;
   stress = step.stress;
   just_remeshed = false;
-  if (const auto strain = reload.step(step.strain, von_mises(step.stress)))
-    remeshings.back().strain_to_reload = *strain;
+  const auto reloaded = reload.step(step.strain, now);
+  if (reloaded.strain) remeshings.back().strain_to_reload = reloaded.strain;
+  if (reloaded.ratio) remeshings.back().reloaded_stress_ratio = reloaded.ratio;
 }
 
 std::string RunProgress::text() const {
@@ -63,6 +35,7 @@ std::string RunProgress::text() const {
          {"elements_initial", elements_initial},
          {"just_remeshed", just_remeshed},
          {"stress", stress},
+         {"slope", slope},
          {"due", {due.trigger, due.reason}},
          {"fresh", {fresh.worst_radius_ratio, fresh.poor_share, fresh.worst_jacobian}},
          {"watch_from", watch_from},
@@ -72,6 +45,9 @@ std::string RunProgress::text() const {
          {"wall_s", wall_s},
          {"reload",
           {{"active", reload.state.active},
+           {"ratio_due", reload.state.ratio_due},
+           {"slope", reload.state.slope},
+           {"before", reload.state.before},
            {"start_strain", reload.state.start_strain},
            {"target", reload.state.target},
            {"last_strain", reload.state.last_strain},
@@ -80,7 +56,7 @@ std::string RunProgress::text() const {
          {"failed_remeshings", json::array()}};
   for (const auto& f : failed_remeshings)
     j["failed_remeshings"].push_back({{"strain", f.strain}, {"reason", f.reason}});
-  for (const auto& r : remeshings) j["remeshings"].push_back(to_json(r));
+  for (const auto& r : remeshings) j["remeshings"].push_back(results::remeshing_text(r));
   return j.dump();
 }
 
@@ -97,6 +73,7 @@ RunProgress RunProgress::from_text(const std::string& text) {
     j.at("elements_initial").get_to(p.elements_initial);
     j.at("just_remeshed").get_to(p.just_remeshed);
     j.at("stress").get_to(p.stress);
+    j.at("slope").get_to(p.slope);
     j.at("cpu_s").get_to(p.cpu_s);
     j.at("wall_s").get_to(p.wall_s);
     j.at("due").at(0).get_to(p.due.trigger);
@@ -111,12 +88,15 @@ RunProgress RunProgress::from_text(const std::string& text) {
       p.failed_remeshings.push_back({f.at("strain"), f.at("reason")});
     const json& r = j.at("reload");
     r.at("active").get_to(p.reload.state.active);
+    r.at("ratio_due").get_to(p.reload.state.ratio_due);
+    r.at("slope").get_to(p.reload.state.slope);
+    r.at("before").get_to(p.reload.state.before);
     r.at("start_strain").get_to(p.reload.state.start_strain);
     r.at("target").get_to(p.reload.state.target);
     r.at("last_strain").get_to(p.reload.state.last_strain);
     r.at("last_stress").get_to(p.reload.state.last_stress);
     for (const json& remeshing : j.at("remeshings"))
-      p.remeshings.push_back(remeshing_from(remeshing));
+      p.remeshings.push_back(results::remeshing_from_text(remeshing.get<std::string>()));
     return p;
   } catch (const json::exception& e) {
     throw core::InternalError(std::string("progress of the run in a checkpoint: ") + e.what());

@@ -33,6 +33,7 @@ struct RunProgress {
   long elements_initial = 0;
   bool just_remeshed = false;      ///< the next row is the first on a new mesh
   std::array<double, 6> stress{};  ///< of the last step
+  double slope = 0;                ///< of the von Mises stress over the strain in it [MPa]
   std::vector<results::RemeshingSummary> remeshings;
   std::vector<results::FailedRemeshing> failed_remeshings;
   DueRemeshing due;

@@ -1,14 +1,28 @@
 // When a run remeshes, and what it does if that fails.
 
 #include "core/error.hpp"
+#include "core/file.hpp"
 #include "core/parallel.hpp"
 #include "drivers/mesh_files.hpp"
 #include "drivers/on_root.hpp"
 #include "drivers/run_job.hpp"
 #include "drivers/run_report.hpp"
+#include "results/names.hpp"
 #include "solver/snapshot_fields.hpp"
 
 namespace polyslip::drivers {
+namespace {
+
+/// A remeshing that changed a grain beyond the deck's limits: no reason to go on without one.
+class AuditFailure : public core::RecoverableError {
+ public:
+  using core::RecoverableError::RecoverableError;
+};
+
+/// First step with carried stresses over the last before: what was carried has to settle.
+constexpr double first_step_share = 0.25;
+
+}  // namespace
 
 void RunJob::watch(const mesh::Snapshot& snapshot) {
   on_root(comm_, [&] {
@@ -49,7 +63,7 @@ bool RunJob::remesh(const mesh::Snapshot& old) {
             progress_.due.reason);
   progress_.last_attempt = model_->strain();
   const RunProgress before = progress_;
-  std::string reason;
+  std::string reason, beyond_limits;
   int number = 0;
   for (const RemeshingAttempt& attempt : remeshing_attempts(options_)) {
     try {
@@ -57,11 +71,12 @@ bool RunJob::remesh(const mesh::Snapshot& old) {
       return true;
     } catch (const core::RecoverableError& error) {
       reason = error.what();
+      if (dynamic_cast<const AuditFailure*>(&error)) beyond_limits = reason;
       progress_ = before;
       log_.warning("remeshing, {}: {}", attempt.what, reason);
     }
   }
-  keep_old_mesh(old, reason);
+  keep_old_mesh(old, beyond_limits.empty() ? reason : beyond_limits, !beyond_limits.empty());
   return false;
 }
 
@@ -69,7 +84,12 @@ bool RunJob::remesh(const mesh::Snapshot& old) {
 /// folder.
 void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const mesh::Snapshot& old) {
   remap::RemeshReport report;
-  build_model(new_mesh(attempt, old, report));
+  mesh::Snapshot fresh = new_mesh(attempt, old, report);
+  std::string beyond = report.beyond_limits;
+  broadcast(comm_, beyond);
+  if (!beyond.empty()) throw AuditFailure(beyond);
+  build_model(std::move(fresh));
+  if (attempt.remeshing.transport.stress == "carried") model_->relax();
   measure_new_mesh();
   const mesh::Snapshot start = model_->snapshot();
   const auto first = [&] {
@@ -81,12 +101,14 @@ void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const me
   on_root(comm_, [&] {
     const auto measure = times_.measure("output");
     write_mesh_files(start.mesh, request_.folder, start.mesh_number, options_.output.mesh_formats);
+    core::write_file(path(results::remeshing_name(start.mesh_number)), remeshing_table(report));
     results::RemeshingSummary summary = remeshing_summary(report);
+    summary.stress_before = von_mises(progress_.stress);
     summary.trigger = progress_.due.trigger;
     summary.reason = progress_.due.reason;
     summary.attempts = number;
     progress_.remeshings.push_back(summary);
-    progress_.reload.start(report.strain, von_mises(progress_.stress));
+    progress_.reload.start(report.strain, summary.stress_before, progress_.slope);
   });
   progress_.due = {};
   progress_.just_remeshed = true;
@@ -111,17 +133,22 @@ mesh::Snapshot RunJob::new_mesh(const RemeshingAttempt& attempt, const mesh::Sna
     }
     const auto load = old.history.find(solver::field::load_program);
     if (load != old.history.end()) fresh.history.insert(*load);
+    const auto step = old.history.find(solver::field::step_history);
+    if (step != old.history.end() && attempt.remeshing.transport.stress == "carried")
+      fresh.history[solver::field::step_history] = {step->second.at(0) * first_step_share};
     times_.add("remeshing", pool_.cpu_seconds() - workers);
   });
   return fresh;
 }
 
-void RunJob::keep_old_mesh(const mesh::Snapshot& old, const std::string& reason) {
+void RunJob::keep_old_mesh(const mesh::Snapshot& old, const std::string& reason,
+                           bool beyond_limits) {
   build_model(old);
   const bool served = progress_.due.trigger != failed_step;
   progress_.failed_remeshings.push_back({model_->strain(), reason});
   progress_.due = {};
   progress_.watch_from = model_->strain() + options_.remeshing.min_interval;
+  if (beyond_limits) throw core::RecoverableError(reason);
   if (!served)
     throw core::RecoverableError(fmt::format(
         "strain {:.6g}: no step converges on the old mesh, and no new one could be made; last "

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/rotation.hpp"
 #include "core/version.hpp"
 #include "results/names.hpp"
 #include "results/picture.hpp"
@@ -41,24 +42,54 @@ std::string remeshing_text(const remap::RemeshReport& r) {
   return fmt::format(
       "remeshing at strain {:.4g}: {} elements -> {}; worst radius ratio {:.3f} -> {:.3f}; grain "
       "volumes changed by {:.3f} % rms, {:.3f} % at worst; mean orientations of grains moved by "
-      "{:.3f} degrees on average, {:.3f} at worst; {} faces copied",
+      "{:.3f} degrees on average, {:.3f} at worst; spreads {:.3f} -> {:.3f} degrees, {:.3f} at "
+      "worst; mean g {:.3f} -> {:.3f} MPa; mean slip {:.4f} -> {:.4f}; elastic energy {:.4g} -> "
+      "{:.4g}; {} faces copied",
       r.strain, r.elements_before, r.elements_after, r.min_radius_ratio_before,
       r.min_radius_ratio_after, 100 * r.rms_grain_volume_change, 100 * r.max_grain_volume_change,
-      r.mean_mean_rotation, r.max_mean_rotation, r.meshing.copied_faces.size());
+      r.mean_mean_rotation, r.max_mean_rotation, r.before.mean_spread, r.after.mean_spread,
+      r.max_spread_change, r.before.g.mean, r.after.g.mean, r.before.slip.mean, r.after.slip.mean,
+      r.before.elastic_energy, r.after.elastic_energy, r.meshing.copied_faces.size());
 }
 
 results::RemeshingSummary remeshing_summary(const remap::RemeshReport& r) {
-  return {r.strain,
-          r.elements_before,
-          r.elements_after,
-          r.min_radius_ratio_before,
-          r.min_radius_ratio_after,
-          r.max_grain_volume_change,
-          std::nullopt,
-          {},
-          {},
-          1,
-          static_cast<int>(r.meshing.copied_faces.size())};
+  const auto side = [](const remap::BodyStatistics& b) {
+    return results::RemeshedState{b.mean_spread,
+                                  {b.g.mean, b.g.min, b.g.max},
+                                  {b.slip.mean, b.slip.min, b.slip.max},
+                                  b.elastic_energy};
+  };
+  results::RemeshingSummary s;
+  s.strain = r.strain;
+  s.elements_before = r.elements_before;
+  s.elements_after = r.elements_after;
+  s.min_radius_ratio_before = r.min_radius_ratio_before;
+  s.min_radius_ratio_after = r.min_radius_ratio_after;
+  s.max_grain_volume_change = r.max_grain_volume_change;
+  s.rms_grain_volume_change = r.rms_grain_volume_change;
+  s.mean_grain_rotation = r.mean_mean_rotation;
+  s.max_grain_rotation = r.max_mean_rotation;
+  s.max_spread_change = r.max_spread_change;
+  s.before = side(r.before);
+  s.after = side(r.after);
+  s.copied_faces = static_cast<int>(r.meshing.copied_faces.size());
+  return s;
+}
+
+std::string remeshing_table(const remap::RemeshReport& r) {
+  std::string table =
+      "grain,volume_before,volume_after,rotation,spread_before,spread_after,g_before,g_after,"
+      "g_min_before,g_min_after,g_max_before,g_max_after,slip_before,slip_after,slip_min_before,"
+      "slip_min_after,slip_max_before,slip_max_after,elastic_energy_before,elastic_energy_after\n";
+  for (std::size_t i = 0; i < r.grains_before.size(); ++i) {
+    const remap::GrainStatistics &a = r.grains_before[i], &b = r.grains_after[i];
+    const double rotation = a.orientation.angularDistance(b.orientation) * core::degrees_per_radian;
+    table += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", i + 1,
+                         a.volume, b.volume, rotation, a.spread, b.spread, a.g.mean, b.g.mean,
+                         a.g.min, b.g.min, a.g.max, b.g.max, a.slip.mean, b.slip.mean, a.slip.min,
+                         b.slip.min, a.slip.max, b.slip.max, a.elastic_energy, b.elastic_energy);
+  }
+  return table;
 }
 
 CpuSeconds total_times(const CpuSeconds& earlier, const core::StageTimes& times) {

@@ -25,6 +25,8 @@ using CpuSeconds = std::vector<std::pair<std::string, double>>;
 std::string step_text(const solver::StepRecord& step, double seconds_left);
 
 std::string remeshing_text(const remap::RemeshReport& report);
+/// remeshing-NNN.csv: a row a grain (docs/results-format.md).
+std::string remeshing_table(const remap::RemeshReport& report);
 results::RemeshingSummary remeshing_summary(const remap::RemeshReport& report);
 
 /// What earlier sessions and this one took, by stage.

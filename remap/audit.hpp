@@ -1,14 +1,16 @@
 #pragma once
-// What a remeshing changed.
+// What a remeshing changed, grain by grain.
+
+#include <string>
 
 #include "mesh/snapshot.hpp"
 #include "remap/remesh.hpp"
 
 namespace polyslip::remap {
 
-/// Fills the report's figures about quality, grain volumes and mean orientations. Throws
-/// RecoverableError if a grain's volume changed by more than the options allow, naming the grain.
-void audit(const mesh::Snapshot& before, const mesh::Snapshot& after,
-           const RemeshingOptions& options, RemeshReport& report);
+/// Fills the report's figures about quality and grains. Returns what is beyond the options' limits,
+/// naming the grain; empty if nothing is.
+std::string audit(const mesh::Snapshot& before, const mesh::Snapshot& after,
+                  const RemeshingOptions& options, RemeshReport& report, int threads = 1);
 
 }  // namespace polyslip::remap

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.hpp"
 #include "remap/audit.hpp"
 
 namespace polyslip::remap {
@@ -32,8 +33,9 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
   const std::string repairs = mesh::repairs_text(report.meshing);
   if (!repairs.empty()) log(fmt::format("remeshing at strain {:.6g}: {}", old.strain, repairs));
   mesh::check(mesh);
-  mesh::Snapshot result = transport(old, std::move(mesh));
-  audit(old, result, options, report);
+  const int threads = core::thread_count(meshing.jobs);
+  mesh::Snapshot result = transport(old, std::move(mesh), options.transport, threads);
+  report.beyond_limits = audit(old, result, options, report, threads);
   return result;
 }
 

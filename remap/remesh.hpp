@@ -8,6 +8,8 @@
 #include "mesh/geometry.hpp"
 #include "mesh/snapshot.hpp"
 #include "mesh/volume_mesher.hpp"
+#include "remap/grain_statistics.hpp"
+#include "remap/transport.hpp"
 #include "remap/wear.hpp"
 
 namespace polyslip::remap {
@@ -22,8 +24,20 @@ struct RemeshingOptions {
   /// direction in which the polycrystal was compressed (the paper, section 3.1), 0 keeps their
   /// size.
   double orthotropic_share = 1;
-  double max_grain_volume_change =
-      0.005;  ///< relative; beyond it the run stops and names the grain
+  TransportOptions transport{"corrected", "zero"};  ///< docs/remeshing-accuracy.md says why
+  // Limits of a remeshing; beyond them the run stops and names the grain.
+  double max_grain_volume_change = 0.005;  ///< relative
+  double max_grain_rotation = 5;           ///< of a grain's mean orientation [degrees]
+  double max_grain_spread_change = 2;      ///< of the mean angle from it [degrees]
+  double max_grain_g_change = 0.05;        ///< of its mean g, relative
+};
+
+/// Over all grains.
+struct BodyStatistics {
+  double volume = 0;          ///< L^3
+  double mean_spread = 0;     ///< over the grains [degrees]
+  FieldStatistics g, slip;    ///< weighted by volume; MPa, 1
+  double elastic_energy = 0;  ///< MPa L^3
 };
 
 struct RemeshReport {
@@ -33,11 +47,16 @@ struct RemeshReport {
   double max_grain_volume_change = 0;  ///< relative
   double rms_grain_volume_change = 0;
   double max_mean_rotation = 0, mean_mean_rotation = 0;  ///< of grains' mean orientations, degrees
+  double max_spread_change = 0;                          ///< of a grain, degrees
+  double max_g_change = 0;                               ///< of a grain's mean, relative
+  BodyStatistics before, after;
+  std::vector<GrainStatistics> grains_before, grains_after;
+  std::string beyond_limits;  ///< what is, naming the grain; empty if nothing
   mesh::MeshingReport meshing;
 };
 
 /// The deformed snapshot with a new mesh of the same topology. Throws RecoverableError if no valid
-/// mesh comes out or the audit fails; the old snapshot is untouched.
+/// mesh comes out; `report.beyond_limits` says what the audit found. The old snapshot is untouched.
 mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& meshing,
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
                       const std::function<void(const std::string&)>& log);
@@ -45,9 +64,5 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
 /// The frame in which sizes and projections are taken: (size / extent)^share along each axis along
 /// which the polycrystal's extent has become less than its size at zero strain, 1 along the others.
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, double orthotropic_share);
-
-/// State and nodal fields of `old` on `mesh` (0-order by centroid within the same grain; nodal
-/// fields by shape functions; see core::Transport).
-mesh::Snapshot transport(const mesh::Snapshot& old, mesh::Mesh mesh);
 
 }  // namespace polyslip::remap

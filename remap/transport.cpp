@@ -1,14 +1,16 @@
-// State transport of section 2.3.3: 0-order by centroid within the same grain, nodal fields by the
-// old element's shape functions.
+#include "remap/transport.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "mesh/quadrature.hpp"
 #include "mesh/shape_functions.hpp"
 #include "remap/donor_average.hpp"
+#include "remap/grain_correction.hpp"
 #include "remap/locator.hpp"
-#include "remap/remesh.hpp"
 
 namespace polyslip::remap {
 namespace {
@@ -18,29 +20,79 @@ using core::Vec3;
 using mesh::Field;
 using mesh::Location;
 
-/// For each new element, the old element of the same grain that holds its centroid.
-std::vector<int> donors(const mesh::Mesh& mesh, const ElementLocator& locator) {
+/// Where the entities of the new mesh take their values from.
+struct Donors {
+  std::vector<int> element;              ///< [new elements]
+  std::vector<std::size_t> point;        ///< [new points] point of the old mesh; by points only
+  std::vector<remap::Location> of_node;  ///< [new nodes]
+};
+
+Vec3 place(const mesh::Mesh& mesh, std::size_t element, const std::array<double, 10>& shape) {
+  Vec3 x = Vec3::Zero();
+  for (int i = 0; i < 10; ++i) x += shape[i] * mesh.nodes[mesh.tetrahedra[element][i]];
+  return x;
+}
+
+/// The old element of the same grain that holds a point of a new element.
+remap::Location donor_at(const mesh::Mesh& mesh, std::size_t element, const Vec3& x,
+                         const ElementLocator& locator) {
+  const int cell = mesh.tetrahedron_cell[element];
+  const remap::Location found = locator.find(x, cell);
+  if (found.element < 0)
+    throw core::InternalError("transport: grain " + std::to_string(cell + 1) +
+                              " has no elements in the old mesh");
+  return found;
+}
+
+std::vector<int> donors_of_centroids(const mesh::Mesh& mesh, const ElementLocator& locator,
+                                     int threads) {
   const auto shape = mesh::tet10_shape(Vec3::Constant(0.25));
   std::vector<int> result(mesh.tetrahedra.size());
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    Vec3 centroid = Vec3::Zero();
-    for (int i = 0; i < 10; ++i) centroid += shape[i] * mesh.nodes[mesh.tetrahedra[e][i]];
-    result[e] = locator.find(centroid, mesh.tetrahedron_cell[e]).element;
-    if (result[e] < 0)
-      throw core::InternalError("transport: grain " + std::to_string(mesh.tetrahedron_cell[e] + 1) +
-                                " has no elements in the old mesh");
-  }
+  core::parallel_for(threads, result.size(), [&](std::size_t e) {
+    result[e] = donor_at(mesh, e, place(mesh, e, shape), locator).element;
+  });
+  return result;
+}
+
+/// The point of the rule nearest to local coordinates.
+std::size_t nearest_point(std::span<const mesh::QuadraturePoint> rule, const Vec3& xi) {
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t q = 0; q < rule.size(); ++q)
+    if (const double d = (rule[q].xi - xi).squaredNorm(); d < least) {
+      least = d;
+      nearest = q;
+    }
+  return nearest;
+}
+
+/// For each new point, the nearest point of the old element of the same grain that holds it.
+std::vector<std::size_t> donors_of_points(const mesh::Mesh& mesh,
+                                          std::span<const mesh::QuadraturePoint> rule,
+                                          const ElementLocator& locator, int threads) {
+  std::vector<std::array<double, 10>> shapes;
+  for (const auto& point : rule) shapes.push_back(mesh::tet10_shape(point.xi));
+  std::vector<std::size_t> result(mesh.tetrahedra.size() * rule.size());
+  core::parallel_for(threads, mesh.tetrahedra.size(), [&](std::size_t e) {
+    for (std::size_t q = 0; q < rule.size(); ++q) {
+      const auto found = donor_at(mesh, e, place(mesh, e, shapes[q]), locator);
+      result[e * rule.size() + q] =
+          static_cast<std::size_t>(found.element) * rule.size() + nearest_point(rule, found.xi);
+    }
+  });
   return result;
 }
 
 /// For each node of `mesh`, the place in the old mesh; any grain of the node serves, the field is
 /// continuous.
-std::vector<remap::Location> node_places(const mesh::Mesh& mesh, const ElementLocator& locator) {
+std::vector<remap::Location> node_places(const mesh::Mesh& mesh, const ElementLocator& locator,
+                                         int threads) {
+  std::vector<int> cell(mesh.nodes.size(), -1);
+  for (std::size_t e = mesh.tetrahedra.size(); e-- > 0;)
+    for (int node : mesh.tetrahedra[e]) cell[node] = mesh.tetrahedron_cell[e];
   std::vector<remap::Location> places(mesh.nodes.size());
-  for (int e = 0; e < mesh.element_count(); ++e)
-    for (int node : mesh.tetrahedra[e])
-      if (places[node].element < 0)
-        places[node] = locator.find(mesh.nodes[node], mesh.tetrahedron_cell[e]);
+  core::parallel_for(threads, places.size(),
+                     [&](std::size_t n) { places[n] = locator.find(mesh.nodes[n], cell[n]); });
   return places;
 }
 
@@ -66,49 +118,105 @@ Field interpolate(const Field& field, const mesh::Mesh& old_mesh,
   return result;
 }
 
-/// The donor's element mean at each of `copies` points of every new element.
-Field copy_from_donors(const Field& field, const std::vector<double>& means, int copies,
-                       const std::vector<int>& donor) {
+/// values[from] for each entity of the new mesh, `copies` times.
+template <class Index>
+Field copy_from(const Field& field, const std::vector<double>& values, int copies,
+                const std::vector<Index>& donor) {
   const std::size_t components = static_cast<std::size_t>(field.components);
   Field result = empty_like(field, donor.size() * copies);
   auto out = result.values.begin();
-  for (int from : donor)
+  for (const Index from : donor)
     for (int copy = 0; copy < copies; ++copy)
-      out = std::copy_n(means.begin() + static_cast<std::ptrdiff_t>(from * components), components,
+      out = std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(from * components), components,
                         out);
   return result;
 }
 
-Field carry(const Field& field, const mesh::Snapshot& old, const std::vector<int>& donor,
-            const std::vector<remap::Location>& places) {
-  const int points = field.location == Location::quadrature_point ? old.quadrature_points : 1;
-  switch (field.transport) {
-    case Transport::shape_functions:
-      if (field.location != Location::node)
-        throw core::InternalError("transport: field '" + field.name + "' is not nodal");
-      return interpolate(field, old.mesh, places);
-    case Transport::reset_to_zero:
-      return empty_like(field,
-                        field.location == Location::node ? places.size() : donor.size() * points);
-    case Transport::element_average:
-    case Transport::orientation_average:
-      if (field.location == Location::node)
-        throw core::InternalError("transport: nodal field '" + field.name +
-                                  "' has no element average");
-      return copy_from_donors(field, points == 1 ? field.values : element_means(old, field), points,
-                              donor);
-    case Transport::not_carried:
-      break;
+class Carrier {
+ public:
+  Carrier(const mesh::Snapshot& old, const Donors& donors, bool with_stress)
+      : old_(old), donors_(donors), with_stress_(with_stress) {}
+
+  bool carries(const Field& field) const { return field.transport != Transport::not_carried; }
+
+  Field operator()(const Field& field) const {
+    switch (field.transport) {
+      case Transport::shape_functions:
+        if (field.location != Location::node)
+          throw core::InternalError("transport: field '" + field.name + "' is not nodal");
+        return interpolate(field, old_.mesh, donors_.of_node);
+      case Transport::reset_to_zero:
+        return with_stress_ && field.location != Location::node ? by_donors(field) : zero(field);
+      case Transport::element_average:
+      case Transport::orientation_average:
+        if (field.location == Location::node)
+          throw core::InternalError("transport: nodal field '" + field.name +
+                                    "' has no element average");
+        return by_donors(field);
+      case Transport::not_carried:
+        break;
+    }
+    throw core::InternalError("transport: field '" + field.name + "' is not carried");
   }
-  throw core::InternalError("transport: field '" + field.name + "' is not carried");
+
+  Field by_donors(const Field& field) const {
+    if (field.location == Location::element)
+      return copy_from(field, field.values, 1, donors_.element);
+    if (!donors_.point.empty()) return copy_from(field, field.values, 1, donors_.point);
+    return copy_from(field, element_means(old_, field), old_.quadrature_points, donors_.element);
+  }
+
+ private:
+  Field zero(const Field& field) const {
+    const std::size_t elements = donors_.element.size();
+    switch (field.location) {
+      case Location::node:
+        return empty_like(field, donors_.of_node.size());
+      case Location::element:
+        return empty_like(field, elements);
+      case Location::quadrature_point:
+        return empty_like(field, elements * static_cast<std::size_t>(old_.quadrature_points));
+    }
+    throw core::InternalError("transport: no such location");
+  }
+
+  const mesh::Snapshot& old_;
+  const Donors& donors_;
+  bool with_stress_;
+};
+
+/// Volumes at zero pressure such that V/V0 is the donor's: the pressure that is carried then
+/// belongs to the volumes. So does the ratio at the points, of elements that have one there.
+void carry_volumes(const mesh::Snapshot& old, const std::vector<int>& donor, const Carrier& carry,
+                   mesh::Snapshot& fresh) {
+  const Field* volume = old.find("volume", Location::element);
+  const Field* reference = old.find("reference_volume", Location::element);
+  if (!volume || !reference)
+    throw core::InternalError("transport: a state without volumes has no stress to carry");
+  const auto points = point_volumes(fresh);
+  const auto count = static_cast<std::size_t>(fresh.quadrature_points);
+  Field now = empty_like(*volume, donor.size()), at_zero = empty_like(*reference, donor.size());
+  for (std::size_t e = 0; e < donor.size(); ++e) {
+    for (std::size_t q = 0; q < count; ++q) now.values[e] += points[e * count + q];
+    at_zero.values[e] = now.values[e] * reference->values[donor[e]] / volume->values[donor[e]];
+  }
+  fresh.fields.push_back(std::move(now));
+  fresh.fields.push_back(std::move(at_zero));
+  if (const Field* ratio = old.find("volume_ratio", Location::quadrature_point))
+    fresh.fields.push_back(carry.by_donors(*ratio));
 }
 
 }  // namespace
 
-mesh::Snapshot transport(const mesh::Snapshot& old, mesh::Mesh mesh) {
+mesh::Snapshot transport(const mesh::Snapshot& old, mesh::Mesh mesh,
+                         const TransportOptions& options, int threads) {
   const ElementLocator locator(old.mesh);
-  const std::vector<int> donor = donors(mesh, locator);
-  const std::vector<remap::Location> places = node_places(mesh, locator);
+  Donors donors;
+  donors.element = donors_of_centroids(mesh, locator, threads);
+  donors.of_node = node_places(mesh, locator, threads);
+  if (options.state != "element")
+    donors.point =
+        donors_of_points(mesh, mesh::tet_quadrature(old.quadrature_points), locator, threads);
 
   mesh::Snapshot result;
   result.mesh_number = old.mesh_number + 1;
@@ -116,10 +224,12 @@ mesh::Snapshot transport(const mesh::Snapshot& old, mesh::Mesh mesh) {
   result.time = old.time;
   result.strain = old.strain;
   result.provenance = old.provenance;
+  const Carrier carry(old, donors, options.stress == "carried");
   for (const Field& field : old.fields)
-    if (field.transport != Transport::not_carried)
-      result.fields.push_back(carry(field, old, donor, places));
+    if (carry.carries(field)) result.fields.push_back(carry(field));
   result.mesh = std::move(mesh);
+  if (options.state == "corrected") correct_grains(old, result, threads);
+  if (options.stress == "carried") carry_volumes(old, donors.element, carry, result);
   return result;
 }
 

@@ -28,7 +28,7 @@ std::string without_part(std::string name) {
 bool is_top_file(const std::string& name) {
   return std::find(top_names.begin(), top_names.end(), name) != top_names.end() ||
          number_in(name, "mesh-", ".msh") >= 0 || number_in(name, "mesh-", ".vtu") >= 0 ||
-         number_in(name, "mesh-", ".inp") >= 0;
+         number_in(name, "mesh-", ".inp") >= 0 || number_in(name, "remeshing-", ".csv") >= 0;
 }
 
 bool is_result_file(const std::string& name) {

@@ -25,6 +25,7 @@ fails when the two differ.
 | `results.xdmf` | all of them as one time series for ParaView (XDMF Reader or Xdmf3ReaderT) |
 | `results/index.json` | list of the stored states, from which `results.xdmf` is made |
 | `checkpoints/checkpoint-0000.h5`, ... | the last two checkpoints; files of the same type |
+| `remeshing-001.csv`, ... | what each remeshing changed, grain by grain |
 | `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 (others by `[output] mesh_formats`; formats.md) |
 | `polycrystal.tess` | the regularised tessellation |
 | `report.html` | all of it in one page (report.md) |
@@ -112,13 +113,27 @@ constexpr const char* summary_text_page = R"(## summary.json
 `schema` "polyslip-summary/1", `completed`, `final_strain`, `grains`, `elements_initial`,
 `elements_final`, `nodes_initial`, `nodes_final`, `min_radius_ratio`, `mean_radius_ratio` (3 r_in /
 R_circ of the corners' tetrahedron), `steps`, `step_cuts`, `newton_iterations`,
-`linear_iterations`, `remeshings` (a list of `strain`, `elements_before`, `elements_after`,
-`min_radius_ratio_before`, `min_radius_ratio_after`, `max_grain_volume_change` relative,
-`strain_to_reload`: strain until the stress is back at the curve before, null if it never was;
-`trigger` "at_strains", "worn elements" or "failed step" and its `reason` in words, `attempts` until it
-succeeded, `copied_faces`), `failed_remeshings` (a list of `strain` and `reason`: the run stayed on the
-old mesh), `stress_final_mpa` (3x3, volume average), `cpu_s` by stage, `wall_s`, `peak_rss_mb`, `version`,
+`linear_iterations`, `remeshings` (a list, below), `failed_remeshings` (a list of `strain` and `reason`:
+the run stayed on the old mesh), `stress_final_mpa` (3x3, volume average), `cpu_s` by stage, `wall_s`, `peak_rss_mb`, `version`,
 `seed`. What does not apply (`polyslip mesh` has no steps) is left out.
+
+Of each remeshing: `strain`, `trigger` ("at_strains", "worn elements" or "failed step") and its `reason`
+in words, `attempts` until it succeeded, `elements_before`, `elements_after`, `min_radius_ratio_before`,
+`min_radius_ratio_after`, `copied_faces`; over the grains, `max_grain_volume_change` and
+`rms_grain_volume_change` (relative), `mean_grain_rotation` and `max_grain_rotation` (of their mean
+orientations, degrees), `max_spread_change` (degrees); `before` and `after`, each with `mean_spread`
+(mean over the grains of the volume-weighted mean angle from a grain's mean orientation, degrees), `g`
+and `slip` (mean, least, largest) and `elastic_energy` (MPa L^3); `stress_before` (von Mises stress of
+the volume average, MPa), `strain_to_reload` (until that stress is back at 99 % of it, null if it never
+was), `reloaded_stress_ratio` (the stress 0.01 of strain later over the curve before, continued in a
+straight line; null if the run or the mesh did not last so long).
+
+## remeshing-001.csv
+
+A row a grain, of the remeshing that made the mesh of that number: volume (L^3), rotation of its mean
+orientation (degrees), spread (degrees), mean and extremes of g (MPa) and accumulated slip, elastic
+energy (MPa L^3), before and after. `before` is the deformed state, `after` the same state on the new
+mesh, before its first step.
 )";
 
 const char* type_name(hdf5::Number type) {

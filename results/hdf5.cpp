@@ -18,6 +18,9 @@ using Object = Handle<H5Oclose>;
 class Quiet {
  public:
   Quiet() {
+    // Every file is closed by its owner, and one that is abandoned must not be: see File::abandon.
+    static const herr_t no_clean_up = H5dont_atexit();
+    static_cast<void>(no_clean_up);
     H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   }

@@ -45,6 +45,9 @@ class File {
   static File open(const std::string& path);
   /// Closes and reports what could not be written.
   void close();
+  /// Lets go of a file that could not be written, without closing it: after a failed write HDF5
+  /// 1.10 crashes in H5Fclose, and again at the end of the program.
+  void abandon() { file_.release(); }
   const std::string& path() const { return path_; }
 
   /// New dataset with the groups on its way. `data` holds the product of `shape` numbers; an empty

@@ -23,6 +23,8 @@ inline int checkpoint_number(std::string_view name) {
 inline std::string mesh_name(int number, std::string_view extension = ".msh") {
   return numbered("mesh-", number, 3, extension);
 }
+/// "remeshing-001.csv", by the number of the new mesh
+inline std::string remeshing_name(int number) { return numbered("remeshing-", number, 3, ".csv"); }
 /// "mesh-000-periodic.csv"
 inline std::string periodic_name(int number) {
   return numbered("mesh-", number, 3, "-periodic.csv");

@@ -290,12 +290,13 @@ std::vector<mesh::Field> read_fields(const hdf5::File& file, TableReader& r, int
 
 void write_state(const std::string& path, const mesh::Snapshot& snapshot) {
   const std::string part = core::part_path(path);
+  auto file = hdf5::File::create(part, header_size);
   try {
-    auto file = hdf5::File::create(part, header_size);
     write_all(file, snapshot);
     file.close();
     seal(part);
   } catch (...) {
+    file.abandon();
     std::remove(part.c_str());
     throw;
   }

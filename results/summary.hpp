@@ -10,15 +10,30 @@
 
 namespace polyslip::results {
 
+/// The body on one side of a remeshing.
+struct RemeshedState {
+  double mean_spread = 0;        ///< mean angle from a grain's mean, over the grains [degrees]
+  std::array<double, 3> g{};     ///< mean, least, largest [MPa]
+  std::array<double, 3> slip{};  ///< likewise
+  double elastic_energy = 0;     ///< MPa L^3
+};
+
 struct RemeshingSummary {
   double strain = 0;
   long elements_before = 0, elements_after = 0;
   double min_radius_ratio_before = 0, min_radius_ratio_after = 0;
   double max_grain_volume_change = 0;      ///< relative
   std::optional<double> strain_to_reload;  ///< until the stress is back at the curve before
-  std::string trigger;                     ///< "at_strains", "worn elements", "failed step"
-  std::string reason;                      ///< in words
-  int attempts = 1;                        ///< until it succeeded
+  /// Stress 0.01 of strain later over the curve before, continued in a straight line.
+  std::optional<double> reloaded_stress_ratio;
+  double rms_grain_volume_change = 0;                      ///< relative
+  double mean_grain_rotation = 0, max_grain_rotation = 0;  ///< of mean orientations [degrees]
+  double max_spread_change = 0;                            ///< of a grain [degrees]
+  RemeshedState before, after;
+  double stress_before = 0;  ///< von Mises, MPa
+  std::string trigger;       ///< "at_strains", "worn elements", "failed step"
+  std::string reason;        ///< in words
+  int attempts = 1;          ///< until it succeeded
   int copied_faces = 0;
 };
 
@@ -45,6 +60,10 @@ struct Summary {
   std::string version;
   std::optional<std::uint64_t> seed;
 };
+
+/// A remeshing as JSON, numbers exactly, and back; throws InternalError for another text.
+std::string remeshing_text(const RemeshingSummary& remeshing);
+RemeshingSummary remeshing_from_text(const std::string& text);
 
 /// The JSON text, schema "polyslip-summary/1". Numbers that are not finite become null.
 std::string summary_text(const Summary& summary);

@@ -298,6 +298,26 @@ struct Model::Impl {
     return newton->solve(problem, x, p);
   }
 
+  void relax() {
+    // Strain that the load would do in that time; flow in it changes stresses by about
+    // shear modulus x strain, less than a hundredth of the flow stress.
+    constexpr double idle = 1e-6;
+    std::vector<double> x = now.x, p = now.p;
+    const double scale = loading.initial_strain_increment;
+    const double kappa = point_volume_modulus(von_mises_stress(), scale, law.shear_modulus());
+    const NewtonProblem problem{
+        now, program.time(strain + idle) - program.time(strain), scale, kappa, strain, {}};
+    const NewtonReport report = newton->solve(problem, x, p);
+    if (!report.converged)
+      throw core::RecoverableError(fmt::format(
+          "strain {:.6g}: carried stresses do not come to equilibrium: {}", strain, report.reason));
+    for (std::size_t i = 0; i < x.size(); ++i) displacement[i] += x[i] - now.x[i];
+    discretisation->accept(x, p, now);
+    element_stress = discretisation->element_stress();
+    point_stress = discretisation->cauchy_stress();
+    volumes = discretisation->volumes();
+  }
+
   /// A stage whose target of stress is met already ends where it begins.
   void skip_met_stages() {
     const double stress = load_stress(loading, mean_stress());
@@ -448,6 +468,7 @@ double Model::strain() const { return impl_->strain; }
 double Model::time() const { return impl_->time; }
 bool Model::finished() const { return impl_->program.finished(); }
 StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
+void Model::relax() { impl_->relax(); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
 std::vector<core::Vec3> Model::positions() const { return impl_->gathered(impl_->now.x); }
 std::vector<core::Vec3> Model::departure_rates() const {

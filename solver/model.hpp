@@ -59,6 +59,10 @@ class Model {
   /// core::InternalError if the load is finished, RecoverableError, on every rank,
   /// when the step falls below the smallest one; the state is then that of the last accepted step.
   StepRecord step(double target_strain);
+  /// Brings the stresses of the snapshot (carried over a remeshing) to equilibrium with the
+  /// boundary held, in a time too short to flow. Throws core::RecoverableError, on every rank, if
+  /// Newton's method does not converge.
+  void relax();
   /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.
   void drop_setup();
   /// Of the nodes, on rank 0; empty elsewhere.

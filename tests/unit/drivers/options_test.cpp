@@ -167,6 +167,11 @@ poor_radius_ratio = 0.15
 poor_share_increase = 0.05
 inversion_strain = 0.04
 min_interval = 0.07
+transport = "corrected"
+stress = "carried"
+max_grain_rotation = 4
+max_grain_spread_change = 1.5
+max_grain_g_change = 0.03
 orthotropic_share = 0.5
 max_grain_volume_change = 0.01
 [solver]
@@ -265,6 +270,11 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.remeshing.wear.poor_share_increase, 0.05);
   EXPECT_EQ(o.remeshing.wear.inversion_strain, 0.04);
   EXPECT_EQ(o.remeshing.min_interval, 0.07);
+  EXPECT_EQ(o.remeshing.transport.state, "corrected");
+  EXPECT_EQ(o.remeshing.transport.stress, "carried");
+  EXPECT_EQ(o.remeshing.max_grain_rotation, 4);
+  EXPECT_EQ(o.remeshing.max_grain_spread_change, 1.5);
+  EXPECT_EQ(o.remeshing.max_grain_g_change, 0.03);
   EXPECT_EQ(o.remeshing.orthotropic_share, 0.5);
   EXPECT_EQ(o.remeshing.max_grain_volume_change, 0.01);
   EXPECT_EQ(o.solver.element, "displacement");

@@ -32,6 +32,17 @@ TEST(RemeshingAttempts, StartWithTheDeckAndGoOnWithEveryMesher) {
   for (const auto& a : attempts) EXPECT_FALSE(a.what.empty());
 }
 
+TEST(RemeshingAttempts, DropCarriedStressesFirst) {
+  Options o;
+  o.remeshing.transport.stress = "carried";
+  const auto attempts = remeshing_attempts(o);
+  ASSERT_EQ(attempts.size(), 5u);
+  EXPECT_EQ(attempts[0].remeshing.transport.stress, "carried");
+  EXPECT_EQ(attempts[1].meshing.mesher_target, o.mesh.mesher_target);
+  for (std::size_t i = 1; i < 5; ++i) EXPECT_EQ(attempts[i].remeshing.transport.stress, "zero");
+  EXPECT_EQ(attempts[4].meshing.element_size, o.mesh.element_size);
+}
+
 TEST(RemeshingAttempts, LeaveOutAShareThatIsZeroAlready) {
   Options o;
   o.remeshing.orthotropic_share = 0;

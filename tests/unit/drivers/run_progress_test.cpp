@@ -7,14 +7,23 @@
 namespace polyslip::drivers {
 namespace {
 
+results::RemeshingSummary remeshing(double strain, const std::string& trigger, int attempts) {
+  results::RemeshingSummary r;
+  r.strain = strain;
+  r.trigger = trigger;
+  r.attempts = attempts;
+  r.before.g = {10.1, 8.2, 11.9};
+  return r;
+}
+
 TEST(RunProgress, CountsStepsAndTheReloading) {
   RunProgress p;
   p.just_remeshed = true;
-  p.remeshings.push_back(
-      {0.3, 10, 12, 0.1, 0.2, 1e-4, std::nullopt, "at_strains", "the deck asks", 1, 0});
-  p.reload.start(0.3, 20);
+  p.remeshings.push_back(remeshing(0.3, at_strains, 1));
+  p.reload.start(0.3, 20, 50);
   solver::StepRecord step;
   step.strain = 0.302;
+  step.step_size = 0.002;
   step.stress = {0, 0, -40, 0, 0, 0};
   step.newton_iterations = 3;
   step.linear_iterations = 17;
@@ -40,15 +49,18 @@ TEST(RunProgress, ComesBackFromItsText) {
   p.elements_initial = 3456;
   p.just_remeshed = true;
   p.stress = {0.1, 1.0 / 3, -27.123456789012345, 0, 1e-17, 2};
-  p.remeshings.push_back({0.3, 10, 12, 0.1, 0.2, 1e-4, 0.0021, at_strains, "the deck", 1, 0});
-  p.remeshings.push_back({0.5, 12, 13, 0.1, 0.2, 1e-4, std::nullopt, worn_out, "0.1", 3, 2});
+  p.remeshings.push_back(remeshing(0.3, at_strains, 1));
+  p.remeshings.back().strain_to_reload = 0.0021;
+  p.remeshings.back().reloaded_stress_ratio = 0.99999999999999989;
+  p.remeshings.push_back(remeshing(0.5, worn_out, 3));
   p.failed_remeshings.push_back({0.4, "grain 3"});
   p.due = {failed_step, "no step"};
   p.fresh = {0.2, 0.01, 0.7, 0};
   p.watch_from = 0.55;
   p.last_attempt = 0.5;
   p.last_stored = 0.48;
-  p.reload.start(0.5, 31.7);
+  p.slope = 41.5;
+  p.reload.start(0.5, 31.7, 41.5);
   p.cpu_s = {{"meshing", 1.25}, {"deformation", 17.5}};
   p.wall_s = 12.5;
   const RunProgress q = RunProgress::from_text(p.text());
@@ -58,6 +70,9 @@ TEST(RunProgress, ComesBackFromItsText) {
   EXPECT_TRUE(q.reload.state.active);
   ASSERT_EQ(q.remeshings.size(), 2u);
   EXPECT_EQ(*q.remeshings[0].strain_to_reload, 0.0021);
+  EXPECT_EQ(*q.remeshings[0].reloaded_stress_ratio, 0.99999999999999989);
+  EXPECT_EQ(q.remeshings[0].before.g[2], 11.9);
+  EXPECT_EQ(q.slope, 41.5);
   EXPECT_EQ(q.remeshings[1].trigger, worn_out);
   EXPECT_EQ(q.remeshings[1].attempts, 3);
   ASSERT_EQ(q.failed_remeshings.size(), 1u);

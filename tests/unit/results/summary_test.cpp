@@ -23,8 +23,15 @@ TEST(Summary, HoldsTheFieldsOfARun) {
   s.step_cuts = 1;
   s.newton_iterations = 90;
   s.linear_iterations = 900;
-  s.remeshings = {{0.3, 100, 200, 0.1, 0.2, 1e-4, 0.004, "worn elements", "worst", 2, 5},
-                  {0.5, 1, 2, 0.1, 0.2, 1e-4, {}, "at_strains", "asked", 1, 0}};
+  results::RemeshingSummary worn;
+  worn.strain = 0.3;
+  worn.elements_after = 200;
+  worn.strain_to_reload = 0.004;
+  worn.trigger = "worn elements";
+  worn.attempts = 2;
+  worn.copied_faces = 5;
+  worn.after.slip = {0.3, 0.1, 0.9};
+  s.remeshings = {worn, {}};
   s.failed_remeshings = {{0.4, "grain 7"}};
   s.stress_final_mpa = {{{1, 2, 3}, {2, 5, 6}, {3, 6, std::numeric_limits<double>::quiet_NaN()}}};
   s.cpu_s = {{"meshing", 1.5}};
@@ -47,6 +54,8 @@ TEST(Summary, HoldsTheFieldsOfARun) {
   EXPECT_EQ(j.at("remeshings").at(0).at("trigger"), "worn elements");
   EXPECT_EQ(j.at("remeshings").at(0).at("attempts"), 2);
   EXPECT_EQ(j.at("remeshings").at(0).at("copied_faces"), 5);
+  EXPECT_EQ(j.at("remeshings").at(0).at("after").at("slip").at(2), 0.9);
+  EXPECT_TRUE(j.at("remeshings").at(0).at("reloaded_stress_ratio").is_null());
   EXPECT_EQ(j.at("failed_remeshings").at(0).at("reason"), "grain 7");
   EXPECT_EQ(j.at("stress_final_mpa").at(1).at(2), 6);
   EXPECT_TRUE(j.at("stress_final_mpa").at(2).at(2).is_null());
