@@ -272,6 +272,13 @@ remap::RemeshingOptions read_remeshing(Deck& deck) {
        .max = 1,
        .help = "Share of the shortening that element sizes follow: 1 keeps the number of elements "
                "across a direction in which the polycrystal was compressed, 0 keeps their size."});
+  o.lengthening_share = t.number(
+      "lengthening_share",
+      {.fallback = o.lengthening_share,
+       .min = 0,
+       .max = 1,
+       .help = "Share of the lengthening that element sizes follow: 0 keeps their size along a "
+               "direction in which the polycrystal was drawn out, 1 the number of elements."});
   read_transport(t, o);
   o.max_grain_volume_change = t.number("max_grain_volume_change",
                                        {.fallback = o.max_grain_volume_change,

@@ -1,5 +1,7 @@
 // When a run remeshes, and what it does if that fails.
 
+#include <utility>
+
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "core/parallel.hpp"

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "mesh/flattening.hpp"
 #include "mesh/planar_mesher.hpp"
 #include "mesh/projection.hpp"
 #include "mesh/size_field.hpp"
@@ -18,8 +19,6 @@ namespace {
 
 using core::Vec3;
 
-/// Share of its area that each part of an old face must keep in the projection.
-constexpr double least_projected_share = 0.05;
 /// How far beyond the old face, in its extent, a node may be that is put on its nearest point.
 constexpr double farthest_beyond = 0.02;
 /// A domain face is flat if its points differ by less than this, relative to the domain.
@@ -53,6 +52,7 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
     : geometry_(geometry),
       options_(options),
       scale_(scale),
+      isotropy_(isotropic_scale(geometry)),
       vertices_(geometry.vertices),
       sizes_(element_sizes(geometry.topology, options)),
       edges_(geometry.edges.size()),
@@ -62,6 +62,7 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
       face_copied_(geometry.faces.size(), false),
       edge_stale_(geometry.edges.size(), true),
       face_stale_(geometry.faces.size(), true),
+      why_copied_(geometry.faces.size()),
       forbidden_(geometry.faces.size()) {
   find_planes();
   for (const auto& shape : geometry.edges)
@@ -120,9 +121,10 @@ void BoundaryMesher::keep_in_plane_of(int face, Vec3& x) const {
   if (d >= 0 && planes_[d]) put_on_planes({&*planes_[d], 1}, x);
 }
 
-bool BoundaryMesher::copy(int face) {
+bool BoundaryMesher::copy(int face, const std::string& why) {
   if (!geometry_.from_mesh || face_copied_[face]) return false;
   face_copied_[face] = face_stale_[face] = true;
+  why_copied_[face] = why;
   forbidden_[face].clear();
   for (int e : geometry_.topology.faces[face].edges)
     if (!edge_copied_[e]) edge_copied_[e] = edge_stale_[e] = true;
@@ -231,15 +233,55 @@ std::string BoundaryMesher::name(int face) const {
                      cells[1] + 1);
 }
 
+FaceProjection BoundaryMesher::projection(int face, Flattening flattening) const {
+  const auto& shape = geometry_.faces[face];
+  switch (flattening) {
+    case Flattening::mean_plane:
+      return {shape, scale_};
+    case Flattening::isotropic_plane:
+      return {shape, scale_, isotropy_};
+    case Flattening::conformal:
+      return {shape, scale_, conformal_places(shape, scale_)};
+    case Flattening::circle:
+      return {shape, scale_, circle_places(shape, scale_)};
+  }
+  throw core::InternalError("a face laid flat in no known way");
+}
+
+/// The ways of laying a face flat, the best first, until one does.
 std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
                                       const std::vector<double>& sizes,
                                       const BoundaryNumbers& numbers) {
-  const auto& shape = geometry_.faces[face];
-  const FaceProjection projection(shape, scale_);
-  if (geometry_.from_mesh && !projection.projects(least_projected_share))
-    return "its surface does not project on a plane";
+  if (!geometry_.from_mesh)
+    return mesh_flattened(face, Flattening::mean_plane, -1, positions, sizes, numbers);
+  struct Way {
+    Flattening flattening;
+    double share;
+  };
+  constexpr std::array<Way, 5> ways{{{Flattening::mean_plane, 0.4},
+                                     {Flattening::conformal, 0.2},
+                                     {Flattening::isotropic_plane, 0.05},
+                                     {Flattening::conformal, 0.01},
+                                     {Flattening::circle, 0.001}}};
+  std::string first;
+  for (const auto& way : ways) {
+    const std::string fault =
+        mesh_flattened(face, way.flattening, way.share, positions, sizes, numbers);
+    if (fault.empty()) return {};
+    if (first.empty()) first = fault;
+  }
+  return first;
+}
+
+std::string BoundaryMesher::mesh_flattened(int face, Flattening flattening, double share,
+                                           const std::vector<Vec3>& positions,
+                                           const std::vector<double>& sizes,
+                                           const BoundaryNumbers& numbers) {
+  const FaceProjection projection = this->projection(face, flattening);
+  if (share >= 0 && !projection.projects(share)) return "its surface does not project on a plane";
   FaceMesh& result = faces_[face];
   result = {};
+  result.flattening = flattening;
   PlanarProblem problem;
   problem.element_size = sizes_.faces[face];
   problem.progression_factor = options_.progression_factor;
@@ -249,24 +291,30 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
     problem.boundary.push_back(projection.project(positions[n]));
     problem.sizes.push_back(sizes[n]);
   }
+  if (!projection.is_mean_plane()) {
+    for (std::size_t i = 0; i < boundary_nodes.size(); ++i)
+      if (const Vec3& x = positions[boundary_nodes[i]];
+          !((projection.lift(problem.boundary[i]) - x).cwiseProduct(scale_).norm() <=
+            farthest_beyond * projection.extent()))
+        return "its edges are not where its surface ends";
+    take_flat_sizes(problem, boundary_nodes, positions);
+  }
   PlanarMesh plane;
   if (!mesh_polygon(problem, plane)) return plane.fault;
-  const auto in_plane = [&](Vec3 x) {
-    keep_in_plane_of(face, x);
-    return x;
-  };
   double farthest = 0;
   std::vector<Vec3> x;
   result.boundary_count = static_cast<int>(problem.boundary.size());
   for (int n : boundary_nodes) x.push_back(positions[n]);
   for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i) {
     double beyond = 0;
-    x.push_back(in_plane(projection.lift(plane.points[i], &beyond)));
+    x.push_back(projection.lift(plane.points[i], &beyond));
+    keep_in_plane_of(face, x.back());
     result.nearest_points += beyond > 0;
     farthest = std::max(farthest, beyond);
     result.inner_nodes.push_back(x.back());
   }
   result.triangles = plane.triangles;
+  result.places = plane.points;
   for (const auto& [a, b, t, i] : inner_edges(plane.triangles))
     result.inner_edges.push_back({a, b, Vec3::Zero()});
   farthest = std::max(farthest, place_mids(face, projection, x));
@@ -276,38 +324,57 @@ std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positio
   return {};
 }
 
+/// Where the plane stretches lengths, sizes go with those of the 1D elements around.
+void BoundaryMesher::take_flat_sizes(PlanarProblem& problem, const std::vector<int>& nodes,
+                                     const std::vector<Vec3>& positions) const {
+  const std::size_t n = problem.boundary.size();
+  std::vector<double> flat(n), real(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t j = (i + 1) % n;
+    flat[i] = (problem.boundary[j] - problem.boundary[i]).norm();
+    real[i] = (positions[nodes[j]] - positions[nodes[i]]).cwiseProduct(scale_).norm();
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t before = (i + n - 1) % n;
+    problem.sizes[i] *= (flat[i] + flat[before]) / (real[i] + real[before]);
+  }
+}
+
 double BoundaryMesher::place_mids(int face, const FaceProjection& projection,
                                   const std::vector<Vec3>& x) {
   double farthest = 0;
-  for (auto& e : faces_[face].inner_edges) {
+  auto& m = faces_[face];
+  for (auto& e : m.inner_edges) {
     const Vec3 middle = (x[e.a] + x[e.b]) / 2;
     double beyond = 0;
-    e.mid = projection.nearest(middle, projection.project(middle), &beyond);
+    Eigen::Vector2d place = (m.places[e.a] + m.places[e.b]) / 2;
+    e.mid = projection.nearest(middle, place, &beyond);
     keep_in_plane_of(face, e.mid);
-    faces_[face].nearest_points += beyond > 0;
+    m.nearest_points += beyond > 0;
     farthest = std::max(farthest, beyond);
   }
   return farthest;
 }
 
 std::optional<Vec3> BoundaryMesher::face_point(int face, const FaceProjection& projection,
-                                               const Vec3& target) const {
+                                               const Eigen::Vector2d& place) const {
   double beyond = 0;
-  Vec3 x = projection.lift(projection.project(target), &beyond);
+  Vec3 x = projection.lift(place, &beyond);
   if (!(beyond <= 0)) return std::nullopt;
   keep_in_plane_of(face, x);
   return x;
 }
 
-void BoundaryMesher::place_face(int face, std::vector<Vec3> inner_nodes,
+void BoundaryMesher::place_face(int face, const std::vector<Eigen::Vector2d>& inner_places,
                                 const std::vector<Vec3>& positions,
                                 const BoundaryNumbers& numbers) {
-  const FaceProjection projection(geometry_.faces[face], scale_);
+  const FaceProjection projection = this->projection(face);
   FaceMesh& m = faces_[face];
   std::vector<Vec3> x;
   for (const int n : face_nodes(face, numbers)) x.push_back(positions[n]);
-  std::copy(inner_nodes.begin(), inner_nodes.end(), x.end() - std::ssize(inner_nodes));
-  m.inner_nodes = std::move(inner_nodes);
+  for (int i = 0; i < m.boundary_count; ++i) m.places[i] = projection.project(x[i]);
+  std::copy(inner_places.begin(), inner_places.end(), m.places.begin() + m.boundary_count);
+  std::copy(x.begin() + m.boundary_count, x.end(), m.inner_nodes.begin());
   m.nearest_points = 0;
   place_mids(face, projection, x);
 }
@@ -377,7 +444,7 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
     }
     for (std::size_t i = 0; i < stale.size(); ++i) {
       if (faults[i].empty()) continue;
-      if (!copy(stale[i]))
+      if (!copy(stale[i], faults[i]))
         throw core::RecoverableError(
             fmt::format("{} cannot be meshed: {}", name(stale[i]), faults[i]));
       again = true;
@@ -450,7 +517,7 @@ std::vector<int> BoundaryMesher::update() {
 }
 
 double BoundaryMesher::distortion(int face) const {
-  return FaceProjection(geometry_.faces[face], scale_).distortion();
+  return projection(face, Flattening::isotropic_plane).distortion();
 }
 
 }  // namespace polyslip::mesh

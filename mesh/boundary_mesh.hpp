@@ -2,6 +2,7 @@
 // Meshes of a geometry's edges and faces (1D and 2D meshing), kept up to date while faces are
 // switched to their old mesh.
 
+#include <Eigen/Core>
 #include <array>
 #include <optional>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "core/types.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/planar_mesher.hpp"
 #include "mesh/projection.hpp"
 #include "mesh/size_field.hpp"
 
@@ -20,6 +22,9 @@ struct EdgeMesh {
   std::vector<core::Vec3> mids;   ///< one an element
   std::vector<double> arcs;       ///< arc lengths of the nodes (CurvedEdge); none if copied
 };
+
+/// How a face is laid flat.
+enum class Flattening { mean_plane, conformal, isotropic_plane, circle };
 
 /// Local node numbers: those on the boundary in the order of the face's loop, then inner ones.
 struct FaceMesh {
@@ -32,6 +37,8 @@ struct FaceMesh {
   std::vector<std::array<int, 3>> triangles;  ///< normals as the face's
   std::vector<InnerEdge> inner_edges;         ///< sorted by (a, b)
   int nearest_points = 0;  ///< nodes beyond the old face, put on its nearest point
+  Flattening flattening = Flattening::mean_plane;
+  std::vector<Eigen::Vector2d> places;  ///< of all nodes in the plane; none if copied
 };
 
 /// Ids of the corner nodes: vertices, then inner nodes of edges by edge, then of faces by face.
@@ -47,7 +54,9 @@ class BoundaryMesher {
 
   /// Keep a face's old mesh, and with it those of its edges, from the next update on. False if it
   /// is kept already or the geometry has none.
-  bool copy(int face);
+  bool copy(int face, const std::string& why);
+  /// Why a face's old mesh is kept; empty if it is not.
+  const std::string& why_copied(int face) const { return why_copied_[face]; }
   bool is_copied(int face) const { return face_copied_[face]; }
   /// Whether it lies in a domain face that is a plane.
   bool is_flat(int face) const {
@@ -68,14 +77,16 @@ class BoundaryMesher {
   const core::Vec3& scale() const { return scale_; }
   /// The point of an edge at an arc length, exactly in the planes that the edge lies in.
   core::Vec3 edge_point(int edge, const CurvedEdge& curve, double arc) const;
-  /// The point of a face above the projection of `target`, exactly in its plane if it has one; none
-  /// beyond the face.
+  /// The way in which a face that is not copied is laid flat.
+  FaceProjection projection(int face) const { return projection(face, faces_[face].flattening); }
+  /// The point of a face above `place`, exactly in its plane if it has one; none beyond the face.
   std::optional<core::Vec3> face_point(int face, const FaceProjection& projection,
-                                       const core::Vec3& target) const;
+                                       const Eigen::Vector2d& place) const;
   /// Moves the nodes of an edge that is not copied to these arc lengths.
   void place_edge(int edge, std::vector<double> arcs);
-  /// Moves the inner nodes of a face that is not copied; `positions` of the other nodes, by number.
-  void place_face(int face, std::vector<core::Vec3> inner_nodes,
+  /// Moves the inner nodes of a face that is not copied, to these places in its plane; `positions`
+  /// of all nodes, by number.
+  void place_face(int face, const std::vector<Eigen::Vector2d>& inner_places,
                   const std::vector<core::Vec3>& positions, const BoundaryNumbers& numbers);
 
   const std::vector<core::Vec3>& vertices() const { return vertices_; }
@@ -108,13 +119,20 @@ class BoundaryMesher {
   bool forbid(int face, std::array<int, 2> local);
   void mesh_edge(int edge);
   void finish_edge(int edge);
+  void take_flat_sizes(PlanarProblem& problem, const std::vector<int>& nodes,
+                       const std::vector<core::Vec3>& positions) const;
   /// Mid nodes of the inner edges; how far the farthest lies beyond the old face.
   double place_mids(int face, const FaceProjection& projection, const std::vector<core::Vec3>& x);
   void copy_edge(int edge);
   std::vector<double> node_sizes(const BoundaryNumbers& numbers) const;
+  FaceProjection projection(int face, Flattening flattening) const;
   /// Why the face could not be meshed; empty if it was.
   std::string mesh_face(int face, const std::vector<core::Vec3>& positions,
                         const std::vector<double>& sizes, const BoundaryNumbers& numbers);
+  /// The same in one way of laying it flat, of which each part keeps this share of its area.
+  std::string mesh_flattened(int face, Flattening flattening, double share,
+                             const std::vector<core::Vec3>& positions,
+                             const std::vector<double>& sizes, const BoundaryNumbers& numbers);
   std::string name(int face) const;
   /// Number of a node of an edge, ends included.
   int number_of(int edge, int node, const BoundaryNumbers& numbers) const;
@@ -147,7 +165,8 @@ class BoundaryMesher {
 
   const Geometry& geometry_;
   MeshingOptions options_;
-  core::Vec3 scale_;
+  core::Vec3 scale_;                          ///< frame of sizes
+  core::Vec3 isotropy_;                       ///< frame of projections
   std::vector<std::optional<Plane>> planes_;  ///< [domain faces] of those that are flat
   DomainFaceLists vertex_planes_, edge_planes_;
   std::vector<core::Vec3> vertices_;
@@ -160,6 +179,7 @@ class BoundaryMesher {
   std::vector<FaceMesh> faces_;
   std::vector<std::vector<double>> cut_arcs_;  ///< [edges] nodes if some were put in; else empty
   std::vector<char> edge_copied_, face_copied_, edge_stale_, face_stale_;
+  std::vector<std::string> why_copied_;
   std::vector<std::vector<std::array<int, 2>>> forbidden_;  ///< [faces] local numbers
 };
 

@@ -57,6 +57,9 @@ class BoundarySlider {
         positions_(boundary.positions(numbers_)),
         stars_(star_mesh(volumes)) {
     for (const auto& e : boundary.edges()) arcs_.push_back(e.arcs);
+    for (const auto& f : boundary.faces())
+      places_.emplace_back(f.places.empty() ? f.places.end() : f.places.begin() + f.boundary_count,
+                           f.places.end());
     find_fixed_edges();
     find_vertex_edges();
     colour_edges();
@@ -75,9 +78,7 @@ class BoundarySlider {
     core::parallel_for(threads_, topology_.faces.size(), [&](std::size_t f) {
       const int face = static_cast<int>(f);
       if (boundary_.is_copied(face) || boundary_.is_periodic_face(face)) return;
-      const auto first = positions_.begin() + numbers_.face_first[f];
-      const auto count = static_cast<std::ptrdiff_t>(boundary_.faces()[f].inner_nodes.size());
-      boundary_.place_face(face, {first, first + count}, positions_, numbers_);
+      boundary_.place_face(face, places_[f], positions_, numbers_);
     });
   }
 
@@ -148,10 +149,10 @@ class BoundarySlider {
   }
 
   /// Down the gradient of (P.29) along `tangent` (of the gradient) by a step that is halved until
-  /// `place`, the node's position (unscaled) that far along, improves its star.
+  /// `place`, the node's position (unscaled) that far along, improves its star; whether it does.
   template <class Place>
-  void slide(int node, const StarDescent& d, double slope, const Place& place) {
-    if (!(d.least > 0) || !(slope > 0) || !std::isfinite(slope)) return;
+  bool slide(int node, const StarDescent& d, double slope, const Place& place) {
+    if (!(d.least > 0) || !(slope > 0) || !std::isfinite(slope)) return false;
     const auto count = static_cast<double>(stars_.star(node).size());
     double step = std::min(longest_step * d.reach, (d.sum - count) / slope);
     for (int i = 0; i <= halvings; ++i, step /= 2) {
@@ -159,8 +160,9 @@ class BoundarySlider {
       if (!x || !star_improves(stars_, node, scaled(*x), d)) continue;
       positions_[node] = *x;
       stars_.move(node, scaled(*x));
-      return;
+      return true;
     }
+    return false;
   }
 
   void slide_edge(int edge) {
@@ -240,18 +242,18 @@ class BoundarySlider {
   void slide_face(int face) {
     const auto count = boundary_.faces()[face].inner_nodes.size();
     if (count == 0 || boundary_.is_copied(face) || boundary_.is_periodic_face(face)) return;
-    const FaceProjection projection(boundary_.geometry().faces[face], boundary_.scale());
+    const FaceProjection projection = boundary_.projection(face);
     for (std::size_t k = 0; k < count; ++k) {
       const int node = numbers_.face_first[face] + static_cast<int>(k);
       const StarDescent d = star_descent(stars_, node);
-      const Vec3 tangential =
-          d.gradient - projection.normal().dot(d.gradient) * projection.normal();
-      const double slope = tangential.norm();
-      const Vec3 direction = tangential / slope, from = stars_.position(node);
-      slide(node, d, slope, [&](double step) {
-        const Vec3 target = (from - step * direction).cwiseQuotient(boundary_.scale());
-        return boundary_.face_point(face, projection, target);
+      Eigen::Vector2d& place = places_[face][k];
+      const Eigen::Vector2d from = place;
+      const auto way = projection.descent(from, d.gradient);
+      const bool moved = slide(node, d, way.slope, [&](double step) {
+        place = from + step * way.direction;
+        return boundary_.face_point(face, projection, place);
       });
+      if (!moved) place = from;
     }
   }
 
@@ -263,6 +265,7 @@ class BoundarySlider {
   std::vector<Vec3> positions_;  ///< by number, unscaled
   StarMesh stars_;               ///< scaled
   std::vector<std::vector<double>> arcs_;
+  std::vector<std::vector<Eigen::Vector2d>> places_;  ///< of inner nodes of faces in their planes
   std::vector<char> fixed_edges_;
   std::vector<int> vertex_first_, vertex_edges_;  ///< edges of vertex v: [first[v], first[v + 1])
   std::vector<std::vector<int>> edge_colours_, face_colours_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include "core/error.hpp"
 
 namespace polyslip::mesh {
@@ -65,6 +67,20 @@ Geometry geometry_of(const Tessellation& tessellation) {
   for (std::size_t f = 0; f < g.topology.faces.size(); ++f)
     g.faces.push_back(interpolation_triangles(tessellation, static_cast<int>(f)));
   return g;
+}
+
+Vec3 isotropic_scale(const Geometry& geometry) {
+  if (!geometry.from_mesh) return Vec3::Ones();
+  Eigen::AlignedBox3d box;
+  for (const auto& face : geometry.faces)
+    for (const Vec3& x : face.points) box.extend(x);
+  return geometry.size.cwiseQuotient(box.sizes());
+}
+
+Vec3 isotropic_scale(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& x : mesh.nodes) box.extend(x);
+  return mesh.size.cwiseQuotient(box.sizes());
 }
 
 Geometry geometry_of(const Mesh& mesh) {

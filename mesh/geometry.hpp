@@ -37,12 +37,19 @@ struct Geometry {
   std::vector<core::Vec3> vertices;
   std::vector<EdgeShape> edges;
   std::vector<FaceShape> faces;
+  std::vector<double> volumes;  ///< wanted of grains in a remeshing; none: those of the shapes
   bool from_mesh = false;  ///< shapes are those of a mesh, so that a face's old mesh may be kept
 };
 
 Geometry geometry_of(const Tessellation& tessellation);
 /// From a (deformed) mesh of order 2.
 Geometry geometry_of(const Mesh& mesh);
+
+/// The frame in which a deformed polycrystal has its size at zero strain again, and its grains
+/// their shapes, but for what distinguishes them: size / extent along each axis. (1, 1, 1) unless
+/// it is from a mesh. Projections and what depends on angles are taken there.
+core::Vec3 isotropic_scale(const Geometry& geometry);
+core::Vec3 isotropic_scale(const Mesh& mesh);
 
 /// What a deck asks for in [mesh].
 struct MeshingOptions {
@@ -59,13 +66,15 @@ struct MeshingOptions {
 };
 
 struct MeshingReport {
-  std::vector<int> copied_faces;    ///< faces whose old mesh was kept (section 2.3.3)
-  std::vector<std::string> faults;  ///< one line for each candidate that crashed or was invalid
-  std::vector<int> wins;            ///< [meshers] grains won by each
-  int straightened = 0;             ///< mid nodes pulled towards their chord to keep det J > 0
-  int nearest_points = 0;           ///< nodes beyond their old face, put on its nearest point
-  double mean_O = 0;                ///< mean over grains of eq. (5)
+  std::vector<int> copied_faces;        ///< faces whose old mesh was kept (section 2.3.3)
+  std::vector<std::string> why_copied;  ///< [copied_faces] in words
+  std::vector<std::string> faults;      ///< one line for each candidate that crashed or was invalid
+  std::vector<int> wins;                ///< [meshers] grains won by each
+  int straightened = 0;                 ///< mid nodes pulled towards their chord to keep det J > 0
+  int nearest_points = 0;               ///< nodes beyond their old face, put on its nearest point
+  double mean_O = 0;                    ///< mean over grains of eq. (5)
   double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
+  int conformal_faces = 0, circle_faces = 0;  ///< laid flat by these maps, not by projection
   core::StageTimes times;  ///< of this process: "faces", "meshing" (without the meshers),
                            ///< "sliding", "assembly"
 };
@@ -77,10 +86,10 @@ using MeshingProgress = std::function<void(const std::string& stage, double frac
 /// nearest point, faces copied. Empty if nothing.
 std::string repairs_text(const MeshingReport& report);
 
-/// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes and projections are taken in the
-/// frame scaled by `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none.
-/// Same input, same mesh, for any number of workers. Throws RecoverableError if a face or a grain
-/// cannot be meshed, naming it; InternalError if the first mesh does not fill the domain to 1e-12.
+/// Meshes a geometry, bottom up (sections 2.2 and 2.3). Sizes are taken in the frame scaled by
+/// `scale` (x_scaled = scale * x, component by component): (1, 1, 1) for none. Same input, same
+/// mesh, for any number of workers. Throws RecoverableError if a face or a grain cannot be meshed,
+/// naming it; InternalError if the first mesh does not fill the domain to 1e-12.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    MesherPool& pool, MeshingReport& report, const MeshingProgress& progress = {});
 

@@ -135,7 +135,7 @@ class Pipeline {
   /// New and old surfaces share nodes, not all points between them: what volume that costs is given
   /// back by moving mid nodes.
   void keep_volumes(Mesh& mesh) {
-    const auto wanted = grain_volumes(geometry_);
+    const auto wanted = geometry_.volumes.empty() ? grain_volumes(geometry_) : geometry_.volumes;
     std::vector<char> fixed;
     for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f)
       fixed.push_back(boundary_.is_copied(f) || boundary_.is_flat(f));
@@ -159,7 +159,9 @@ class Pipeline {
     for (int grain : failed) {
       const auto s = surface(grain);
       bool copied = false;
-      for (int t : intersecting_triangles(s.mesh)) copied |= boundary_.copy(s.faces[t]);
+      for (int t : intersecting_triangles(s.mesh))
+        copied |=
+            boundary_.copy(s.faces[t], fmt::format("it meets another face of grain {}", grain + 1));
       if (!copied) {
         std::vector<std::pair<double, int>> order;
         for (int f : geometry_.topology.cell_faces[grain])
@@ -168,7 +170,9 @@ class Pipeline {
         const std::size_t count = round + 1 == copy_rounds
                                       ? order.size()
                                       : std::min(order.size(), std::size_t(1) << round);
-        for (std::size_t i = 0; i < count; ++i) copied |= boundary_.copy(order[i].second);
+        for (std::size_t i = 0; i < count; ++i)
+          copied |= boundary_.copy(
+              order[i].second, fmt::format("grain {} cannot be meshed with a new one", grain + 1));
       }
       any |= copied;
     }
@@ -202,9 +206,15 @@ class Pipeline {
         report_.wins[i] += r.mesher == options_.meshers[i];
     }
     report_.copied_faces.clear();
+    report_.why_copied.clear();
     for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f) {
-      if (boundary_.is_copied(f)) report_.copied_faces.push_back(f);
+      if (boundary_.is_copied(f)) {
+        report_.copied_faces.push_back(f);
+        report_.why_copied.push_back(boundary_.why_copied(f));
+      }
       report_.nearest_points += boundary_.faces()[f].nearest_points;
+      report_.conformal_faces += boundary_.faces()[f].flattening == Flattening::conformal;
+      report_.circle_faces += boundary_.faces()[f].flattening == Flattening::circle;
     }
   }
 

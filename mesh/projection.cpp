@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "mesh/shape_functions.hpp"
 
@@ -27,20 +28,70 @@ Vector2d clamped(const Vector2d& xi) {
   return Vector2d(l[1], l[2]) / l.sum();
 }
 
+Vec3 area_vector(const FaceShape& shape, const Vec3& scale, const std::array<int, 3>& p) {
+  const Vec3 a = shape.points[p[0]].cwiseProduct(scale), b = shape.points[p[1]].cwiseProduct(scale);
+  const Vec3 c = shape.points[p[2]].cwiseProduct(scale);
+  return (b - a).cross(c - a) / 2;
+}
+
+double surface_area(const FaceShape& shape, const Vec3& scale, const std::array<int, 3>& p) {
+  return area_vector(shape, scale, p).norm();
+}
+
+double signed_area(const std::vector<Vector2d>& x, const std::array<int, 3>& p) {
+  const Vector2d u = x[p[1]] - x[p[0]], v = x[p[2]] - x[p[0]];
+  return (u[0] * v[1] - u[1] * v[0]) / 2;
+}
+
 }  // namespace
 
-FaceProjection::FaceProjection(const FaceShape& shape, const Vec3& scale)
-    : shape_(&shape), scale_(scale) {
+FaceProjection::FaceProjection(const FaceShape& shape, const Vec3& scale, const Vec3& isotropy)
+    : shape_(&shape), scale_(scale), isotropy_(isotropy) {
   Vec3 sum = Vec3::Zero();
-  const auto at = [&](int i) -> Vec3 { return shape.points[i].cwiseProduct(scale); };
+  const auto at = [&](int i) -> Vec3 { return shape.points[i].cwiseProduct(isotropy); };
   for (const auto& t : shape.triangles) sum += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])) / 2;
   normal_ = sum.normalized();
   int smallest = 0;
   normal_.cwiseAbs().minCoeff(&smallest);
   first_ = normal_.cross(Vec3::Unit(smallest)).normalized();
   second_ = normal_.cross(first_);
+  // The plane's axes in the frame of sizes, made orthonormal there: D (first, second) = axes
+  // metric.
+  const Vec3 d = scale.cwiseQuotient(isotropy);
+  const Vec3 u = d.cwiseProduct(first_), v = d.cwiseProduct(second_);
+  axes_.col(0) = u.normalized();
+  const double along = axes_.col(0).dot(v);
+  const Vec3 across = v - along * axes_.col(0);
+  axes_.col(1) = across.normalized();
+  if (scale != isotropy) metric_ << u.norm(), along, 0, across.norm();
   for (const auto& x : shape.points) projected_.push_back(project(x));
-  for (const auto& t : shape.triangles) {
+  find_boxes();
+}
+
+FaceProjection::FaceProjection(const FaceShape& shape, const Vec3& scale,
+                               std::vector<Vector2d> places)
+    : shape_(&shape),
+      scale_(scale),
+      isotropy_(scale),
+      mean_plane_(false),
+      projected_(std::move(places)),
+      total_share_(0) {
+  if (projected_.empty()) return;
+  find_boxes();
+  find_boundary();
+  double flat = 0, area = 0;
+  for (const auto& t : shape.triangles)
+    for (const auto& q : quarters) {
+      const std::array<int, 3> p{t[q[0]], t[q[1]], t[q[2]]};
+      const double a = surface_area(shape, scale, p);
+      area += a;
+      flat += signed_area(projected_, p);
+    }
+  total_share_ = flat / area;
+}
+
+void FaceProjection::find_boxes() {
+  for (const auto& t : shape_->triangles) {
     Box box{projected_[t[0]], projected_[t[0]]};
     for (int i : t) {
       box.low = box.low.cwiseMin(projected_[i]);
@@ -51,20 +102,75 @@ FaceProjection::FaceProjection(const FaceShape& shape, const Vec3& scale)
   }
 }
 
+void FaceProjection::find_boundary() {
+  std::map<std::array<int, 2>, BoundarySegment> open;
+  for (const auto& t : shape_->triangles)
+    for (int i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      const std::array<int, 2> key{std::min(a, b), std::max(a, b)};
+      const auto [at, added] = open.try_emplace(key, BoundarySegment{a, t[3 + i], b});
+      if (!added) open.erase(at);
+    }
+  for (const auto& [key, segment] : open) boundary_.push_back(segment);
+}
+
 Vector2d FaceProjection::project(const Vec3& position) const {
-  const Vec3 x = position.cwiseProduct(scale_);
-  return {x.dot(first_), x.dot(second_)};
+  if (!mean_plane_) return project_boundary(position);
+  const Vec3 x = position.cwiseProduct(isotropy_);
+  return metric_ * Vector2d(x.dot(first_), x.dot(second_));
+}
+
+// The nearest point of the boundary's quadratic segments: the best of some on each, then Newton's
+// method for the distance.
+Vector2d FaceProjection::project_boundary(const Vec3& position) const {
+  constexpr int samples = 8, iterations = 20;
+  double best = std::numeric_limits<double>::infinity();
+  Vector2d result = Vector2d::Zero();
+  const auto shape = [](double t) {
+    return std::array<double, 3>{(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)};
+  };
+  for (const auto& s : boundary_) {
+    const Vec3 a = shape_->points[s.first] - position, m = shape_->points[s.mid] - position,
+               b = shape_->points[s.last] - position;
+    const auto at = [&](double t) -> Vec3 {
+      const auto n = shape(t);
+      return n[0] * a + n[1] * m + n[2] * b;
+    };
+    double t = 0, near = a.squaredNorm();
+    for (int i = 1; i <= samples; ++i) {
+      const double u = static_cast<double>(i) / samples, d = at(u).squaredNorm();
+      if (d < near) near = d, t = u;
+    }
+    for (int i = 0; i < iterations; ++i) {
+      const Vec3 x = at(t), d1 = (4 * t - 3) * a + (4 - 8 * t) * m + (4 * t - 1) * b;
+      const Vec3 d2 = 4 * a - 8 * m + 4 * b;
+      const double curvature = d1.squaredNorm() + x.dot(d2);
+      if (!(curvature > 0)) break;
+      const double next = std::clamp(t - x.dot(d1) / curvature, 0.0, 1.0);
+      if (std::abs(next - t) < 1e-15) break;
+      t = next;
+    }
+    const double distance = at(t).squaredNorm();
+    if (!(distance < best)) continue;
+    best = distance;
+    const auto n = shape(t);
+    result = n[0] * projected_[s.first] + n[1] * projected_[s.mid] + n[2] * projected_[s.last];
+  }
+  return result;
+}
+
+double FaceProjection::area_share(const std::array<int, 3>& p) const {
+  if (!mean_plane_)
+    return signed_area(projected_, p) / (total_share_ * surface_area(*shape_, scale_, p));
+  const Vec3 area = area_vector(*shape_, isotropy_, p);
+  return area.dot(normal_) / area.norm();
 }
 
 bool FaceProjection::projects(double share) const {
+  if (!(total_share_ > 0)) return false;
   for (const auto& t : shape_->triangles)
-    for (const auto& q : quarters) {
-      const Vec3 a = shape_->points[t[q[0]]].cwiseProduct(scale_);
-      const Vec3 b = shape_->points[t[q[1]]].cwiseProduct(scale_);
-      const Vec3 c = shape_->points[t[q[2]]].cwiseProduct(scale_);
-      const Vec3 area = (b - a).cross(c - a);
-      if (!(area.dot(normal_) > share * area.norm())) return false;
-    }
+    for (const auto& q : quarters)
+      if (!(area_share({t[q[0]], t[q[1]], t[q[2]]}) > share)) return false;
   return true;
 }
 
@@ -72,19 +178,41 @@ double FaceProjection::distortion() const {
   double worst = 0;
   for (const auto& t : shape_->triangles)
     for (const auto& q : quarters) {
-      const Vec3 a = shape_->points[t[q[0]]].cwiseProduct(scale_);
-      const Vec3 b = shape_->points[t[q[1]]].cwiseProduct(scale_);
-      const Vec3 c = shape_->points[t[q[2]]].cwiseProduct(scale_);
-      const Vec3 area = (b - a).cross(c - a);
+      const Vec3 area = area_vector(*shape_, isotropy_, {t[q[0]], t[q[1]], t[q[2]]});
       worst = std::max(worst, std::atan2(area.cross(normal_).norm(), area.dot(normal_)));
     }
   return worst;
+}
+
+FaceProjection::Descent FaceProjection::descent(const Vector2d& p, const Vec3& gradient) const {
+  if (mean_plane_) {
+    const Vector2d g = axes_.transpose() * gradient;
+    return {-g / g.norm(), g.norm()};
+  }
+  // dx/dp by differences, in the frame of sizes.
+  const double h = 1e-6 * extent();
+  const Vec3 x = lift(p);
+  Eigen::Matrix<double, 3, 2> tangents;
+  tangents << (lift(p + Vector2d(h, 0)) - x).cwiseProduct(scale_) / h,
+      (lift(p + Vector2d(0, h)) - x).cwiseProduct(scale_) / h;
+  const Eigen::Matrix2d metric = tangents.transpose() * tangents;
+  if (!(metric.determinant() > 1e-12 * metric.squaredNorm())) return {};
+  const Vector2d dp = metric.inverse() * (tangents.transpose() * gradient);
+  const double slope = (tangents * dp).norm();
+  return {-dp / slope, slope};
 }
 
 Vec3 FaceProjection::evaluate(int triangle, const Vector2d& xi) const {
   const auto n = tri6_shape(xi[0], xi[1]);
   Vec3 x = Vec3::Zero();
   for (int i = 0; i < 6; ++i) x += n[i] * shape_->points[shape_->triangles[triangle][i]];
+  return x;
+}
+
+Vector2d FaceProjection::place(int triangle, const Vector2d& xi) const {
+  const auto n = tri6_shape(xi[0], xi[1]);
+  Vector2d x = Vector2d::Zero();
+  for (int i = 0; i < 6; ++i) x += n[i] * projected_[shape_->triangles[triangle][i]];
   return x;
 }
 
@@ -141,9 +269,9 @@ Vec3 FaceProjection::lift(const Vector2d& p, double* beyond) const {
   for (int t = 0; t < count; ++t) {
     Vector2d xi;
     if (!std::isfinite(invert(t, p, xi))) continue;
-    const Vec3 x = evaluate(t, clamped(xi));
-    const double d = (project(x) - p).norm();
-    if (d < distance) distance = d, nearest = x;
+    const Vector2d inside = clamped(xi);
+    const double d = (place(t, inside) - p).norm();
+    if (d < distance) distance = d, nearest = evaluate(t, inside);
   }
   // No triangle can be inverted: the nearest node.
   if (!std::isfinite(distance))
@@ -158,14 +286,13 @@ Vec3 FaceProjection::lift(const Vector2d& p, double* beyond) const {
 
 // Gauss-Newton steps with the tangents of the surface by differences; a step that leads away ends
 // it.
-Vec3 FaceProjection::nearest(const Vec3& target, const Vector2d& start, double* beyond) const {
+Vec3 FaceProjection::nearest(const Vec3& target, Vector2d& p, double* beyond) const {
   constexpr int steps = 4;
   constexpr double difference = 1e-4;  // of the distance
-  Vector2d p = start;
   Vec3 x = lift(p, beyond);
   const double first = (x - target).norm();
   if (!(first > 0)) return x;
-  const double h = difference * first * scale_.maxCoeff();
+  const double h = difference * (mean_plane_ ? first * scale_.maxCoeff() : 1e-2 * extent());
   for (int i = 0; i < steps; ++i) {
     Eigen::Matrix<double, 3, 2> tangents;
     tangents << (lift(p + Vector2d(h, 0)) - x) / h, (lift(p + Vector2d(0, h)) - x) / h;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/deformed_regularisation.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/snapshot.hpp"
 #include "mesh/volume_mesher.hpp"
@@ -24,6 +25,9 @@ struct RemeshingOptions {
   /// direction in which the polycrystal was compressed (the paper, section 3.1), 0 keeps their
   /// size.
   double orthotropic_share = 1;
+  /// Share of the lengthening that element sizes follow: 0 keeps their size along a direction in
+  /// which the polycrystal was drawn out (the paper), 1 the number of elements.
+  double lengthening_share = 0;
   TransportOptions transport{"corrected", "zero"};  ///< docs/remeshing-accuracy.md says why
   // Limits of a remeshing; beyond them the run stops and names the grain.
   double max_grain_volume_change = 0.005;  ///< relative
@@ -52,6 +56,7 @@ struct RemeshReport {
   BodyStatistics before, after;
   std::vector<GrainStatistics> grains_before, grains_after;
   std::string beyond_limits;  ///< what is, naming the grain; empty if nothing
+  mesh::DeformedRegularisation regularisation;
   mesh::MeshingReport meshing;
 };
 
@@ -61,8 +66,14 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
                       const std::function<void(const std::string&)>& log);
 
-/// The frame in which sizes and projections are taken: (size / extent)^share along each axis along
-/// which the polycrystal's extent has become less than its size at zero strain, 1 along the others.
-core::Vec3 meshing_scale(const mesh::Mesh& mesh, double orthotropic_share);
+/// The frame in which sizes are taken: along each axis (size / extent)^share, of the polycrystal's
+/// extent and its size at zero strain, with the one share where it has become shorter and the other
+/// where it has become longer.
+core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options);
+
+/// The shapes of a worn mesh after the regularisation of what closes; its grains' volumes as they
+/// were.
+mesh::Geometry regularised_geometry(const mesh::Mesh& old,
+                                    mesh::DeformedRegularisation& regularisation);
 
 }  // namespace polyslip::remap

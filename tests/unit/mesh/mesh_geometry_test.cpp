@@ -204,7 +204,7 @@ TEST(MeshGeometry, RemeshingAQuadraticMapOfFlatFacesKeepsItsVolumeAndSurface) {
   EXPECT_GT(looked_at, 100);
 }
 
-TEST(BoundaryMesher, CopiesAFaceThatDoesNotProjectAndItsEdges) {
+TEST(BoundaryMesher, LaysAFoldedFaceFlatByAMapAndCopiesItWithItsEdgesIfAsked) {
   MeshingReport report;
   Geometry g = geometry_of(star_mesh(cubes(2), options_of(0.34), report));
   const auto& faces = g.topology.faces;
@@ -225,6 +225,14 @@ TEST(BoundaryMesher, CopiesAFaceThatDoesNotProjectAndItsEdges) {
   const auto options = options_of(0.5);
   BoundaryMesher mesher(g, options, Vec3::Ones());
   EXPECT_EQ(mesher.update().size(), faces.size());
+  for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
+    EXPECT_FALSE(mesher.is_copied(f)) << f;
+    EXPECT_EQ(mesher.faces()[f].flattening != Flattening::mean_plane, f == folded) << f;
+  }
+  EXPECT_TRUE(mesher.copy(folded, "asked for"));
+  EXPECT_FALSE(mesher.copy(folded, "again"));
+  EXPECT_EQ(mesher.why_copied(folded), "asked for");
+  EXPECT_LT(mesher.update().size(), faces.size());
   for (int f = 0; f < static_cast<int>(faces.size()); ++f)
     EXPECT_EQ(mesher.is_copied(f), f == folded) << f;
   const auto& copy = mesher.faces()[folded];

@@ -137,12 +137,20 @@ TEST(PointVolumes, AddUpToTheBox) {
   EXPECT_NEAR(sum, 2, 1e-12);
 }
 
-TEST(MeshingScale, UndoesTheShorteningByItsShare) {
+TEST(MeshingScale, UndoesShorteningAndLengtheningByTheirShares) {
   mesh::Mesh mesh = tests::box_mesh({2, 1, 1}, Vec3(2, 1, 1));
   for (Vec3& x : mesh.nodes) x = x.cwiseProduct(Vec3(1.25, 1, 0.8));
-  EXPECT_LT((meshing_scale(mesh, 1) - Vec3(1, 1, 1.25)).norm(), 1e-14);
-  EXPECT_LT((meshing_scale(mesh, 0.5) - Vec3(1, 1, std::sqrt(1.25))).norm(), 1e-14);
-  EXPECT_EQ(meshing_scale(mesh, 0), Vec3(1, 1, 1));
+  const auto scale = [&](double shortening, double lengthening) {
+    RemeshingOptions options;
+    options.orthotropic_share = shortening;
+    options.lengthening_share = lengthening;
+    return meshing_scale(mesh, options);
+  };
+  EXPECT_LT((scale(1, 0) - Vec3(1, 1, 1.25)).norm(), 1e-14);
+  EXPECT_LT((scale(0.5, 0) - Vec3(1, 1, std::sqrt(1.25))).norm(), 1e-14);
+  EXPECT_LT((scale(0, 1) - Vec3(0.8, 1, 1)).norm(), 1e-14);
+  EXPECT_LT((scale(1, 0.5) - Vec3(std::sqrt(0.8), 1, 1.25)).norm(), 1e-14);
+  EXPECT_EQ(scale(0, 0), Vec3(1, 1, 1));
 }
 
 TEST(Audit, NamesTheGrainWhoseVolumeChanged) {

@@ -1,0 +1,99 @@
+// Remeshing without a solver: polycrystals moved by plane strain and a random flow of a grain's
+// wavelength (support/grain_flow.hpp) are remeshed up to a strain of 2.5. Limits are those of the
+// project: each mesh passes check(), at most 1 % of the faces of all remeshings are copied, grain
+// volumes change by less than 0.1 % rms and 0.3 % at worst in each, and the worst radius ratio, in
+// the frame scaled back to isotropy, is at least half of that of the first mesh.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/geometry.hpp"
+#include "remap/remesh.hpp"
+#include "support/grain_flow.hpp"
+
+namespace polyslip::remap {
+namespace {
+
+using core::Vec3;
+
+constexpr double end = 2.5, interval = 0.25;
+
+struct Outcome {
+  int faces = 0, copied = 0, remeshings = 0;
+  double least_share = 1;  ///< of the first mesh's worst radius ratio
+  double rms = 0, worst = 0;
+};
+
+void compare_volumes(const std::vector<double>& before, const std::vector<double>& after,
+                     Outcome& outcome) {
+  double sum = 0;
+  for (std::size_t g = 0; g < before.size(); ++g) {
+    const double change = after[g] / before[g] - 1;
+    sum += change * change / static_cast<double>(before.size());
+    outcome.worst = std::max(outcome.worst, std::abs(change));
+  }
+  outcome.rms = std::max(outcome.rms, std::sqrt(sum));
+}
+
+void remesh_to_the_end(int grains, double element_size, const test::GrainFlow::Options& options,
+                       mesh::MesherPool& pool, Outcome& outcome) {
+  auto tessellation = mesh::voronoi_tessellation({.grains = grains, .seed = options.seed});
+  mesh::regularise(tessellation, {});
+  mesh::MeshingOptions meshing;
+  meshing.element_size = element_size;
+  mesh::MeshingReport report;
+  mesh::Mesh mesh =
+      mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), pool, report);
+  const double first = test::scaled_quality(mesh, Vec3::Ones()).min_radius_ratio;
+  const test::GrainFlow flow(mesh.size, options);
+  RemeshingOptions remeshing;
+  remeshing.lengthening_share = 1;
+  for (double strain = 0; strain < end - 1e-9; strain += interval) {
+    flow.move(mesh, strain, strain + interval);
+    const auto before = mesh::grain_volumes(mesh);
+    mesh::DeformedRegularisation regularisation;
+    mesh = mesh::mesh_geometry(regularised_geometry(mesh, regularisation), meshing,
+                               meshing_scale(mesh, remeshing), pool, report);
+    ASSERT_NO_THROW(mesh::check(mesh));
+    EXPECT_EQ(regularisation.elements_after, 0) << "at strain " << strain + interval;
+    compare_volumes(before, mesh::grain_volumes(mesh), outcome);
+    const auto q = test::scaled_quality(mesh, mesh::isotropic_scale(mesh));
+    outcome.least_share = std::min(outcome.least_share, q.min_radius_ratio / first);
+    outcome.faces += static_cast<int>(mesh.topology.faces.size());
+    outcome.copied += static_cast<int>(report.copied_faces.size());
+    ++outcome.remeshings;
+  }
+}
+
+void expect_limits(const Outcome& outcome, int remeshings) {
+  EXPECT_EQ(outcome.remeshings, remeshings);
+  EXPECT_LE(outcome.copied, outcome.faces / 100);
+  EXPECT_LT(outcome.rms, 1e-3);
+  EXPECT_LT(outcome.worst, 3e-3);
+  EXPECT_GE(outcome.least_share, 0.5);
+}
+
+std::unique_ptr<mesh::MesherPool> start_pool() {
+  return mesh::MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
+}
+
+TEST(RemeshingGeometry, OfASmallPolycrystal) {
+  const auto pool = start_pool();
+  Outcome outcome;
+  remesh_to_the_end(10, 0.7, {.strength = 0.3, .seed = 1}, *pool, outcome);
+  expect_limits(outcome, 10);
+}
+
+TEST(RemeshingGeometry, SlowTwentyPolycrystals) {
+  const auto pool = start_pool();
+  Outcome outcome;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed)
+    remesh_to_the_end(30, 0.5, {.strength = seed % 2 == 0 ? 0.2 : 0.4, .seed = seed}, *pool,
+                      outcome);
+  expect_limits(outcome, 200);
+}
+
+}  // namespace
+}  // namespace polyslip::remap
