@@ -80,6 +80,69 @@ void add_mesh(CLI::App& app, Command& c) {
   verb->callback([&c] { c.verb = Verb::mesh; });
 }
 
+void add_taylor(CLI::App& app, Command& c) {
+  CLI::App* verb = app.add_subcommand("taylor",
+                                      "The Taylor model of a deck: no mesh, each crystal "
+                                      "deforms as the whole");
+  add_deck(*verb, c);
+  verb->add_option("--out", c.out, "Folder (default: the deck's name and \"-taylor\", here)");
+  add_overwrite(*verb, c, "Replace an earlier run in the folder");
+  CLI::Option* threads =
+      verb->add_option("--threads", c.threads, "OpenMP threads of a rank (default: all cores)")
+          ->check(CLI::Range(1, 1024));
+  verb->callback([&c, threads] {
+    c.verb = Verb::taylor;
+    if (threads->count() == 0) c.threads = 0;
+    if (c.out.empty()) c.out = std::filesystem::path(c.deck).stem().string() + "-taylor";
+  });
+}
+
+/// Options that analyse and compare share.
+void add_texture_options(CLI::App& verb, AnalyseRequest& a) {
+  verb.add_option("--half-width", a.half_width,
+                  "Of the kernel, degrees (default: the deck's, else 10)")
+      ->check(CLI::Range(1.0, 90.0));
+  verb.add_option("--sample-symmetry", a.sample_symmetry, "none or orthorhombic")
+      ->check(CLI::IsMember({"none", "orthorhombic"}));
+  verb.add_option("--at-strains", a.at_strains, "Only the states nearest to these strains")
+      ->delimiter(',');
+  verb.add_flag("--inner", a.inner, "Only grains without a face on the domain boundary");
+  verb.add_option("--threads", a.threads, "Threads (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+}
+
+void add_compare(CLI::App& app, Command& c) {
+  CompareRequest& r = c.compare;
+  CLI::App* verb = app.add_subcommand("compare", "A run and the Taylor model side by side");
+  verb->add_option("run", r.run, "Folder of polyslip run")->required();
+  verb->add_option("taylor", r.taylor, "Folder of polyslip taylor")->required();
+  verb->add_option("--to", r.to, "Folder for the files (default: the run's)");
+  add_texture_options(*verb, r.how);
+  verb->add_flag("--overwrite", r.how.overwrite, "Replace an earlier comparison");
+  verb->callback([&c] { c.verb = Verb::compare; });
+}
+
+void add_analyse(CLI::App& app, Command& c) {
+  AnalyseRequest& a = c.analyse;
+  CLI::App* verb =
+      app.add_subcommand("analyse", "Texture and in-grain spreads: tables (CSV) and figures (SVG)");
+  verb->add_option("input", a.input,
+                   "Folder of polyslip run or taylor, or a file of orientations, one a line")
+      ->required();
+  verb->add_option("--to", a.to, "Folder for the files (default: the input's own)");
+  add_texture_options(*verb, a);
+  verb->add_option("--convention", a.convention,
+                   "Of a file: quaternion (w x y z), rodrigues, euler-bunge (degrees); a further "
+                   "column is a weight")
+      ->check(CLI::IsMember({"quaternion", "rodrigues", "euler-bunge"}));
+  verb->add_option("--grains", a.grains, "Grains to draw paths and spreads of (from 1)")
+      ->delimiter(',');
+  verb->add_flag("--one-mode", a.one_mode, "Spreads: only grains of one mode");
+  verb->add_flag("--all-maps", a.all_maps, "Sections of the ODF at every state, not the last only");
+  verb->add_flag("--overwrite", a.overwrite, "Replace an earlier analysis");
+  verb->callback([&c] { c.verb = Verb::analyse; });
+}
+
 void add_convert(CLI::App& app, Command& c) {
   CLI::App* verb = app.add_subcommand(
       "convert", "Write a tessellation or mesh in another format, or a stored state as a table");
@@ -87,10 +150,13 @@ void add_convert(CLI::App& app, Command& c) {
   verb->add_option("out", c.out, "File to write: .tess, .msh, .vtu, .inp");
   verb->add_option("--format", c.format,
                    "Of the file: msh, msh-binary (Gmsh 2.2), msh4, msh4-binary (4.1), vtu, inp "
-                   "(Abaqus), tess; default: by its extension");
+                   "(Abaqus), tess; of a state: csv, mtex, ori; default: by the "
+                   "extension, csv for states");
   CLI::Option* strain = verb->add_option(
       "--at-strain", c.at_strain, "Of a run folder: the stored state nearest to this strain");
-  verb->add_option("--to", c.to, "CSV file for the state, a row an element");
+  verb->add_option("--to", c.to,
+                   "File for the state: a table of elements (.csv), or its orientations for "
+                   "Neper (.ori) or MTEX (--format mtex)");
   verb->add_option("--value", c.value, "Averages of elements, or values at their centroids")
       ->check(CLI::IsMember({"average", "centroid"}))
       ->capture_default_str();
@@ -99,7 +165,9 @@ void add_convert(CLI::App& app, Command& c) {
     c.verb = Verb::convert;
     const bool state = strain->count() > 0 && !c.to.empty();
     const bool none = strain->count() == 0 && c.to.empty();
-    if (c.out.empty() ? !state || !c.format.empty() : !none)
+    const bool known =
+        c.format.empty() || c.format == "csv" || c.format == "mtex" || c.format == "ori";
+    if (c.out.empty() ? !state || !known : !none)
       throw CLI::ValidationError("convert",
                                  "give a file to read and one to write, or a run folder with "
                                  "--at-strain and --to");
@@ -165,6 +233,9 @@ std::optional<Command> read_command_line(int argc, const char* const* argv) {
   add_run(app, command);
   add_check(app, command);
   add_mesh(app, command);
+  add_taylor(app, command);
+  add_analyse(app, command);
+  add_compare(app, command);
   add_convert(app, command);
   add_stats(app, command);
   add_report(app, command);

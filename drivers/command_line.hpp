@@ -4,11 +4,24 @@
 #include <optional>
 #include <string>
 
+#include "drivers/analyse_verb.hpp"
 #include "drivers/stats_verb.hpp"
 
 namespace polyslip::drivers {
 
-enum class Verb { none, run, check, mesh, convert, stats, report, reference };
+enum class Verb {
+  none,
+  run,
+  check,
+  mesh,
+  taylor,
+  analyse,
+  compare,
+  convert,
+  stats,
+  report,
+  reference
+};
 
 struct Command {
   Verb verb = Verb::none;
@@ -17,8 +30,8 @@ struct Command {
   bool cut = false;     ///< mesh: whether the picture shows the inside
   std::string out;      ///< --out; for `run` the default is the deck's name and "-run"
   bool overwrite = false;
-  std::string restart;  ///< --restart
-  int threads = 1;
+  std::string restart;   ///< --restart
+  int threads = 1;       ///< taylor: 0, all cores
   bool profile = false;  ///< run: --profile
   int jobs = 0;          ///< --jobs; 0: one a core
   std::string folder;    ///< convert: run folder, or a file that becomes `out`; report: run folder
@@ -27,6 +40,8 @@ struct Command {
   std::string to;
   std::string value = "average";
   StatsRequest stats;
+  AnalyseRequest analyse;
+  CompareRequest compare;
 };
 
 /// What the arguments ask for. Nothing, if they asked for help or the version, which is then

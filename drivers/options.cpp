@@ -333,6 +333,8 @@ Options declare(Deck& deck) {
   o.remeshing = read_remeshing(deck);
   o.solver = read_solver(deck);
   o.output = read_output(deck);
+  o.taylor = read_taylor(deck);
+  o.texture = read_texture(deck);
   return o;
 }
 

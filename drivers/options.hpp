@@ -34,6 +34,17 @@ struct InputOptions {
   bool any() const { return tessellation || mesh; }
 };
 
+/// What a deck asks for in [taylor].
+struct TaylorOptions {
+  std::optional<int> orientations;  ///< random ones of the distribution; else those of the grains
+};
+
+/// What a deck asks for in [texture], for `polyslip analyse`.
+struct TextureOptions {
+  double half_width = 10;                ///< degrees
+  std::string sample_symmetry = "none";  ///< or "orthorhombic"
+};
+
 /// What a deck asks for in [output].
 struct OutputOptions {
   std::vector<double> at_strains;        ///< increasing, within [0, final_strain]
@@ -54,10 +65,13 @@ struct Options {
   remap::RemeshingOptions remeshing;
   solver::SolverOptions solver;
   OutputOptions output;
+  TaylorOptions taylor;
+  TextureOptions texture;
 };
 
-/// What the deck is read for: a run needs elements of order 2, meshing alone does not.
-enum class Purpose { run, mesh };
+/// What the deck is read for: a run needs elements of order 2, meshing alone does not, and Taylor's
+/// model needs a load that gives a velocity gradient.
+enum class Purpose { run, mesh, taylor };
 
 /// Reads and checks the whole deck, and finishes it. InputError for the first fault, with its
 /// place.

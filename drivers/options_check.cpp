@@ -121,6 +121,7 @@ void check_options(Deck& deck, const Options& options, Purpose purpose) {
   check_loading(deck, options.loading);
   check_strains(deck, options);
   check_mesh_formats(deck, options.output.mesh_formats);
+  if (purpose == Purpose::taylor) check_taylor(deck, options);
   if (purpose == Purpose::run && options.polycrystal.shape != "box")
     deck.fault(
         "polycrystal", "shape",

@@ -22,6 +22,11 @@ OrientationOptions read_orientation_options(core::Deck& deck, const InputOptions
 material::MaterialOptions read_material(core::Deck& deck);
 solver::LoadingOptions read_loading(core::Deck& deck);
 solver::SolverOptions read_solver(core::Deck& deck);
+TaylorOptions read_taylor(core::Deck& deck);
+TextureOptions read_texture(core::Deck& deck);
+
+/// Notes what Taylor's model asks of the deck.
+void check_taylor(core::Deck& deck, const Options& options);
 
 /// Notes what the keys of [loading] ask of each other and the deck does not give.
 void check_loading(core::Deck& deck, const solver::LoadingOptions& options);

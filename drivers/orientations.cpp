@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -98,6 +99,40 @@ std::vector<core::Quaternion> read_orientations(const std::string& path,
     throw core::InputError(fmt::format("{}:{}: ends after {} of {} orientations, one a grain", path,
                                        std::max(number, 1), orientations.size(), count));
   return orientations;
+}
+
+WeightedOrientations read_weighted_orientations(const std::string& path,
+                                                const std::string& convention_name) {
+  const Convention& convention = find_convention(convention_name);
+  std::istringstream lines(core::read_text(path));
+  WeightedOrientations read;
+  int number = 0;
+  std::size_t columns = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::string place = fmt::format("{}:{}", path, ++number);
+    const std::vector<double> x = parse_line(line, place);
+    if (x.empty()) continue;
+    if (columns == 0) columns = x.size();
+    const bool weighted = columns == convention.numbers + 1;
+    if (x.size() != columns || (columns != convention.numbers && !weighted))
+      throw core::InputError(
+          fmt::format("{}: {} numbers, must be {} ({}: {}), and a weight in all "
+                      "lines or none",
+                      place, x.size(), convention.numbers, convention.name, convention.format));
+    read.orientations.push_back(orientation(x, convention, place));
+    read.weights.push_back(weighted ? x.back() : 1);
+    if (!(read.weights.back() >= 0))
+      throw core::InputError(fmt::format("{}: the weight {} must be >= 0", place, x.back()));
+  }
+  if (std::none_of(read.weights.begin(), read.weights.end(), [](double w) { return w > 0; }))
+    throw core::InputError(path + ": holds no orientation with a weight");
+  return read;
+}
+
+std::string convention_of_file(const std::string& path) {
+  const std::string text = core::read_text(path);
+  const bool bunge = text.substr(0, text.find('\n')).find("phi1") != std::string::npos;
+  return bunge ? "euler-bunge" : "quaternion";
 }
 
 std::vector<core::Quaternion> grain_orientations(const Options& options) {

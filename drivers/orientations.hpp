@@ -20,6 +20,17 @@ std::vector<core::Quaternion> uniform_orientations(std::uint64_t seed, int count
 std::vector<core::Quaternion> read_orientations(const std::string& path,
                                                 const std::string& convention, int count);
 
+/// As many as the file has, one at least; a number after an orientation's own is its weight, which
+/// all lines or none have (then 1).
+struct WeightedOrientations {
+  std::vector<core::Quaternion> orientations;
+  std::vector<double> weights;
+};
+WeightedOrientations read_weighted_orientations(const std::string& path,
+                                                const std::string& convention);
+/// "euler-bunge" for a file whose first line names phi1 (as those for MTEX do), else "quaternion".
+std::string convention_of_file(const std::string& path);
+
 /// What the deck asks for, one a grain.
 std::vector<core::Quaternion> grain_orientations(const Options& options);
 

@@ -61,6 +61,10 @@ void RunJob::read_deck() {
                              ": no such file, so there is no run to go on with; start one "
                              "with polyslip run DECK.toml --out " +
                              request_.folder);
+    if (request_.restart && results::StateSeries(request_.folder).without_mesh())
+      throw core::InputError(request_.folder +
+                             ": holds a Taylor model, which is not restarted; run polyslip taylor "
+                             "again with --overwrite");
     text = core::read_text(file);
     understand();
     if (!request_.restart) input_ = read_input(options_);

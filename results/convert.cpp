@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 
 #include "core/error.hpp"
 #include "core/file.hpp"
@@ -17,18 +18,19 @@
 namespace polyslip::results {
 namespace {
 
-void add_row(fmt::memory_buffer& text, const mesh::Mesh& mesh, const ElementTable& t, int e) {
+void add_row(fmt::memory_buffer& text, int grain, const ElementTable& t, std::size_t e) {
   const auto& x = t.centroid[e];
   const auto& q = t.orientation[e];
   fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", e + 1,
-                 mesh.tetrahedron_cell[e] + 1, x[0], x[1], x[2], t.volume[e], q.w(), q.x(), q.y(),
-                 q.z(), t.g[e], t.slip[e], t.equivalent_strain[e],
+                 grain + 1, x[0], x[1], x[2], t.volume[e], q.w(), q.x(), q.y(), q.z(), t.g[e],
+                 t.slip[e], t.equivalent_strain[e],
                  fmt::join(t.cauchy_stress[e].begin(), t.cauchy_stress[e].end(), ","),
                  t.pressure[e]);
 }
 
 /// Row by row, so that a large table never stands in memory as text.
-void write_table(const std::string& path, const mesh::Mesh& mesh, const ElementTable& table) {
+void write_table(const std::string& path, const std::vector<int>& grain,
+                 const ElementTable& table) {
   constexpr std::size_t chunk = 1 << 20;
   std::ofstream out(core::part_path(path), std::ios::binary | std::ios::trunc);
   if (!out) throw core::InputError(path + ": cannot write; is there such a folder?");
@@ -38,8 +40,8 @@ void write_table(const std::string& path, const mesh::Mesh& mesh, const ElementT
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     text.clear();
   };
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    add_row(text, mesh, table, e);
+  for (std::size_t e = 0; e < grain.size(); ++e) {
+    add_row(text, grain[e], table, e);
     if (text.size() > chunk) flush();
   }
   flush();
@@ -77,8 +79,15 @@ StateRecord convert(const std::string& run_folder, double strain, const std::str
                            ": holds no stored state; give the folder of a run that has begun");
   const StateRecord state = nearest_state(series, strain);
   check_target(csv, overwrite);
-  const auto snapshot = read_state(series.path(state));
-  write_table(csv, snapshot.mesh, element_values(snapshot, value));
+  if (series.without_mesh()) {
+    const auto orientations = read_orientation_state(series.path(state));
+    std::vector<int> grain(orientations.table.volume.size());
+    std::iota(grain.begin(), grain.end(), 0);
+    write_table(csv, grain, orientations.table);
+  } else {
+    const auto snapshot = read_state(series.path(state));
+    write_table(csv, snapshot.mesh.tetrahedron_cell, element_values(snapshot, value));
+  }
   return state;
 }
 

@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array top_names{resolved_deck_name, log_name,          macro_name,   summary_name,
-                               xdmf_name,          tessellation_name, picture_name, report_name,
-                               profile_name,       petsc_profile_name};
+constexpr std::array top_names{resolved_deck_name, log_name,           macro_name,   summary_name,
+                               xdmf_name,          tessellation_name,  picture_name, report_name,
+                               profile_name,       petsc_profile_name, texture_name, spreads_name};
 
 std::string without_part(std::string name) {
   if (name.ends_with(".part")) name.resize(name.size() - 5);
@@ -34,6 +34,8 @@ bool is_top_file(const std::string& name) {
 bool is_result_file(const std::string& name) {
   return state_number(name) >= 0 || name == index_name;
 }
+
+bool is_file_of_analysis(const std::string& name) { return is_analysis_file(name); }
 
 bool is_checkpoint_file(const std::string& name) { return checkpoint_number(name) >= 0; }
 
@@ -64,6 +66,7 @@ std::vector<std::string> run_files(const std::string& folder) {
   collect(folder, "", is_top_file, files);
   collect(folder, results_folder, is_result_file, files);
   collect(folder, checkpoints_folder, is_checkpoint_file, files);
+  collect(folder, analysis_folder, is_file_of_analysis, files);
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -32,9 +32,17 @@ fails when the two differ.
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |
 | `profile.txt`, `profile-petsc.txt` | with `--profile`: CPU and wall time of the deformation by stage, messages between ranks; the same stages in PETSc's own log |
+| `texture.csv`, `spreads.csv`, `analysis/` | what `polyslip analyse` makes of it (texture.md) |
 
 Files are written beside (`.part`) and renamed, so that a killed run leaves none of them half
 written; `macro.csv` and `log.txt` grow line by line.
+
+`polyslip taylor` leaves the same but for meshes, pictures, checkpoints and `results.xdmf`. Its states
+have the root attribute `file_type` = "polyslip-orientations" and the datasets `time`, `strain`,
+`mesh/grain` and those of `elements/`, a row an orientation; forces in `macro.csv`, and places in the
+tables of `polyslip convert`, are nan. `summary.json` then has `taylor`: `initial_stress_over_g` and
+`initial_slip_per_strain`, von Mises stress over g and the sum of |slip| per von Mises strain at the
+initial orientations, elasticity being over, at a von Mises rate of reference_slip_rate.
 
 ## Conventions
 

@@ -21,4 +21,12 @@ int number_in(std::string_view name, std::string_view prefix, std::string_view s
   return error == std::errc() ? number : -1;
 }
 
+bool is_analysis_file(std::string_view name) {
+  for (const std::string_view start :
+       {"texture-index.csv", "beta-fibre.", "spread-", "pole-figures-", "inverse-pole-figures-",
+        "odf-", "components.svg", "rotation-paths.svg", "grain-", "compare", "analysis.json"})
+    if (name.starts_with(start)) return true;
+  return false;
+}
+
 }  // namespace polyslip::results

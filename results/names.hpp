@@ -44,6 +44,12 @@ inline constexpr std::string_view index_name = "index.json";  // in results/
 inline constexpr std::string_view tessellation_name = "polycrystal.tess";
 inline constexpr std::string_view picture_name = "polycrystal.png";
 inline constexpr std::string_view report_name = "report.html";
+// of polyslip analyse
+inline constexpr std::string_view texture_name = "texture.csv";
+inline constexpr std::string_view spreads_name = "spreads.csv";
+inline constexpr std::string_view analysis_folder = "analysis";
+/// Whether a file of this name in the analysis folder is polyslip's.
+bool is_analysis_file(std::string_view name);
 
 /// folder + "/" + name
 inline std::string in_folder(std::string_view folder, std::string_view name) {

@@ -13,6 +13,7 @@
 #include "core/rotation.hpp"
 #include "results/checksum.hpp"
 #include "results/element_values.hpp"
+#include "results/orientation_state.hpp"
 #include "results/schema.hpp"
 
 namespace polyslip::results {
@@ -306,7 +307,8 @@ void write_state(const std::string& path, const mesh::Snapshot& snapshot) {
 void verify_state(const std::string& path) { verify_seal(path); }
 
 mesh::Snapshot read_state(const std::string& path) {
-  verify_state(path);
+  if (holds_orientations_only(path))
+    throw core::InputError(path + ": holds orientations without a mesh (polyslip taylor)");
   const auto file = hdf5::File::open(path);
   TableReader r(file);
   mesh::Snapshot s;

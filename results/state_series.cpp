@@ -68,7 +68,7 @@ void StateSeries::write_index() const {
   Json index = {{"schema", index_schema}, {"states", Json::array()}};
   for (const auto& state : states_) index["states"].push_back(to_json(state));
   core::write_file(index_path(folder_), index.dump(1) + "\n");
-  core::write_file(in_folder(folder_, xdmf_name), xdmf_text(states_));
+  if (!without_mesh()) core::write_file(in_folder(folder_, xdmf_name), xdmf_text(states_));
 }
 
 const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot) {
@@ -81,6 +81,20 @@ const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot) {
   state.nodes = snapshot.mesh.node_count();
   state.elements = snapshot.mesh.element_count();
   write_state(path(state), snapshot);
+  states_.push_back(std::move(state));
+  write_index();
+  return states_.back();
+}
+
+const StateRecord& StateSeries::store(const OrientationState& orientations) {
+  StateRecord state;
+  state.file = state_name(static_cast<int>(states_.size()));
+  state.strain = orientations.strain;
+  state.time = orientations.time;
+  state.mesh_number = no_mesh;
+  state.order = 0;
+  state.elements = static_cast<long>(orientations.table.volume.size());
+  write_orientation_state(path(state), orientations);
   states_.push_back(std::move(state));
   write_index();
   return states_.back();

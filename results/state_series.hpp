@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/snapshot.hpp"
+#include "results/orientation_state.hpp"
 #include "results/xdmf.hpp"
 
 namespace polyslip::results {
@@ -19,6 +20,8 @@ class StateSeries {
 
   /// Stores the next state: results/state-<n>.h5. InputError if it cannot be written.
   const StateRecord& store(const mesh::Snapshot& snapshot);
+  /// The same for orientations without a mesh; there is no XDMF file of such states.
+  const StateRecord& store(const OrientationState& state);
   /// InputError if there are fewer states, or one of their files is missing. Touches nothing.
   void require_first(std::size_t count) const;
   /// `require_first`, then keeps the first `count` states; deletes the files of later ones and of
@@ -28,6 +31,8 @@ class StateSeries {
   void trim_after(double strain);
 
   const std::vector<StateRecord>& states() const { return states_; }
+  /// Whether the states are those of a Taylor model: orientations without a mesh.
+  bool without_mesh() const { return !states_.empty() && states_.front().mesh_number < 0; }
   std::string path(const StateRecord& state) const;
 
  private:

@@ -121,6 +121,9 @@ std::string summary_text(const Summary& s) {
   add(j, "peak_rss_mb", s.peak_rss_mb);
   j["version"] = s.version;
   add(j, "seed", s.seed);
+  if (s.taylor)
+    j["taylor"] = {{"initial_stress_over_g", s.taylor->initial_stress},
+                   {"initial_slip_per_strain", s.taylor->initial_slip}};
   return j.dump(2) + "\n";
 }
 

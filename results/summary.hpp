@@ -43,6 +43,12 @@ struct FailedRemeshing {
   std::string reason;
 };
 
+/// Of a Taylor model: factors of its initial orientations (drivers/taylor.hpp).
+struct TaylorSummary {
+  double initial_stress = 0;  ///< von Mises work per strain over g
+  double initial_slip = 0;    ///< sum of |slip| per von Mises strain
+};
+
 /// What is not set does not apply (a meshing has no final strain) and is left out.
 struct Summary {
   std::optional<bool> completed;
@@ -59,6 +65,7 @@ struct Summary {
   std::optional<double> peak_rss_mb;
   std::string version;
   std::optional<std::uint64_t> seed;
+  std::optional<TaylorSummary> taylor;
 };
 
 /// A remeshing as JSON, numbers exactly, and back; throws InternalError for another text.

@@ -6,6 +6,9 @@
 
 namespace polyslip::results {
 
+/// Mesh number of states that have no mesh (orientations of a Taylor model).
+inline constexpr int no_mesh = -1;
+
 /// What the index knows of a stored state.
 struct StateRecord {
   std::string file;   ///< name in results/

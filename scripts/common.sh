@@ -8,7 +8,7 @@ packages=(
   petsc-dev libpetsc-real-dev libopenmpi-dev openmpi-bin libscotch-dev
   libhdf5-openmpi-dev libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev libspdlog-dev
   nlohmann-json3-dev voro++-dev libnanoflann-dev libgmsh-dev libnglib-dev libpng-dev zlib1g-dev
-  libgtest-dev libbenchmark-dev clang-format-14 python3
+  libgtest-dev libbenchmark-dev clang-format-14 python3 python3-h5py
 )
 
 # What only the tests take: a browser for the report.

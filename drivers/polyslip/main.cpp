@@ -3,8 +3,10 @@
 #include <mpi.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 
@@ -16,6 +18,8 @@
 #include "drivers/options.hpp"
 #include "drivers/run.hpp"
 #include "drivers/stats_verb.hpp"
+#include "drivers/taylor.hpp"
+#include "results/analysis/orientation_export.hpp"
 #include "results/convert.hpp"
 #include "results/report/report.hpp"
 #include "solver/petsc_session.hpp"
@@ -42,18 +46,11 @@ std::unique_ptr<mesh::MesherPool> start_pool() {
   return mesh::MesherPool::start((program.parent_path() / "polyslip-mesher").string());
 }
 
-int run(const Command& command) {
-  const auto pool = start_pool();  // before MPI: it forks
+/// A job of all ranks and its exit code.
+int on_ranks(const std::function<int()>& job) {
   const solver::PetscSession session;
   try {
-    return drivers::run(MPI_COMM_WORLD,
-                        {.deck = command.deck,
-                         .folder = command.restart.empty() ? command.out : command.restart,
-                         .overwrite = command.overwrite,
-                         .restart = !command.restart.empty(),
-                         .profile = command.profile,
-                         .jobs = command.jobs},
-                        *pool);
+    return job();
   } catch (const core::InputError&) {
     throw;  // on every rank alike
   } catch (const std::exception& e) {
@@ -62,6 +59,31 @@ int run(const Command& command) {
     MPI_Abort(MPI_COMM_WORLD, drivers::exit_internal_error);
     return drivers::exit_internal_error;
   }
+}
+
+int run(const Command& command) {
+  const auto pool = start_pool();  // before MPI: it forks
+  return on_ranks([&] {
+    return drivers::run(MPI_COMM_WORLD,
+                        {.deck = command.deck,
+                         .folder = command.restart.empty() ? command.out : command.restart,
+                         .overwrite = command.overwrite,
+                         .restart = !command.restart.empty(),
+                         .profile = command.profile,
+                         .jobs = command.jobs},
+                        *pool);
+  });
+}
+
+int taylor(const Command& command) {
+  return on_ranks([&] {
+    int ranks = 1;
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    if (command.threads == 0) omp_set_num_threads(std::max(1, omp_get_num_procs() / ranks));
+    return drivers::taylor(
+        MPI_COMM_WORLD,
+        {.deck = command.deck, .folder = command.out, .overwrite = command.overwrite});
+  });
 }
 
 int check(const Command& command) {
@@ -78,17 +100,22 @@ int convert(const Command& command) {
               << '\n';
     return drivers::exit_fine;
   }
-  const auto state = results::convert(command.folder, command.at_strain, command.to,
-                                      command.value == "centroid" ? results::ElementValue::centroid
-                                                                  : results::ElementValue::average,
-                                      command.overwrite);
+  const auto value = command.value == "centroid" ? results::ElementValue::centroid
+                                                 : results::ElementValue::average;
+  const std::string format =
+      command.format.empty() ? results::analysis::export_format(command.to) : command.format;
+  const auto state = format == "csv" ? results::convert(command.folder, command.at_strain,
+                                                        command.to, value, command.overwrite)
+                                     : results::analysis::export_orientations(
+                                           command.folder, command.at_strain, command.to, format,
+                                           command.overwrite);
   std::cout << command.to << ": the state at strain " << state.strain << " (" << state.file
             << ")\n";
   return drivers::exit_fine;
 }
 
 int obey(const Command& command) {
-  omp_set_num_threads(command.threads);
+  omp_set_num_threads(std::max(1, command.threads));
   switch (command.verb) {
     case Verb::run:
       return run(command);
@@ -97,6 +124,14 @@ int obey(const Command& command) {
     case Verb::mesh:
       drivers::make_mesh(command.deck, command.out, command.overwrite, command.jobs, *start_pool(),
                          command.picture, command.cut);
+      return drivers::exit_fine;
+    case Verb::taylor:
+      return taylor(command);
+    case Verb::analyse:
+      drivers::analyse(command.analyse);
+      return drivers::exit_fine;
+    case Verb::compare:
+      drivers::compare(command.compare);
       return drivers::exit_fine;
     case Verb::convert:
       return convert(command);

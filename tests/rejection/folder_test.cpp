@@ -63,7 +63,7 @@ std::unique_ptr<Sandbox> Folder::made_;
 
 TEST_F(Folder, WithResultsOfAnEarlierRun) {
   const std::string line =
-      "run: holds the results of an earlier run (checkpoints/checkpoint-0001.h5 and 12 more "
+      "run: holds the results of an earlier run (checkpoints/checkpoint-0001.h5 and 13 more "
       "files); give another folder with --out, go on with it by --restart, or replace it with "
       "--overwrite";
   rejected({"run", "deck.toml", "--out", "run"}, line);
@@ -254,7 +254,8 @@ TEST(CommandLine, ThatCannotBeUnderstood) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
       {{}, "A subcommand is required"},
       {{"fly"},
-       "unknown verb 'fly'; there are run, check, mesh, convert, stats, report, "
+       "unknown verb 'fly'; there are run, check, mesh, taylor, analyse, compare, convert, stats, "
+       "report, "
        "reference"},
       {{"run"}, "run: a deck, or --restart DIR, is required"},
       {{"run", "deck.toml", "--threads", "0"}, "--threads: Value 0 not in range 1 to 1024"},

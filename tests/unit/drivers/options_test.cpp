@@ -186,6 +186,11 @@ at_strains = [0, 0.7]
 checkpoint_every_strain = 0
 mesh_formats = ["msh4", "vtu"]
 report = false
+[taylor]
+orientations = 500
+[texture]
+half_width = 7.5
+sample_symmetry = "orthorhombic"
 )";
 
 /// Keys that have a meaning for some types of load only; loading_test.cpp has them.
@@ -287,6 +292,9 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.output.checkpoint_every_strain, 0);
   EXPECT_EQ(o.output.mesh_formats, (std::vector<std::string>{"msh4", "vtu"}));
   EXPECT_FALSE(o.output.report);
+  EXPECT_EQ(o.taylor.orientations, 500);
+  EXPECT_EQ(o.texture.half_width, 7.5);
+  EXPECT_EQ(o.texture.sample_symmetry, "orthorhombic");
   // The deck above would miss a key that is added later: each declared one is in it, but for those
   // that have a single value or exclude another.
   for (const auto& d : deck.declarations())
