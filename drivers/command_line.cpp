@@ -101,7 +101,7 @@ void add_taylor(CLI::App& app, Command& c) {
 void add_texture_options(CLI::App& verb, AnalyseRequest& a) {
   verb.add_option("--half-width", a.half_width,
                   "Of the kernel, degrees (default: the deck's, else 10)")
-      ->check(CLI::Range(1.0, 90.0));
+      ->check(CLI::Range(3.0, 90.0));
   verb.add_option("--sample-symmetry", a.sample_symmetry, "none or orthorhombic")
       ->check(CLI::IsMember({"none", "orthorhombic"}));
   verb.add_option("--at-strains", a.at_strains, "Only the states nearest to these strains")

@@ -33,7 +33,7 @@ TextureOptions read_texture(Deck& deck) {
       "half_width",
       {.unit = "degrees",
        .fallback = o.half_width,
-       .min = 1,
+       .min = 3,
        .max = 90,
        .help =
            "Of de la Vallee Poussin's kernel: the angle at which it is half its maximum. Narrow "

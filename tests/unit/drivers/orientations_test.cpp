@@ -148,5 +148,25 @@ TEST(GrainOrientations, AreDrawnFromTheComponentsOfTheDeck) {
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(same[i].coeffs(), orientations[i].coeffs());
 }
 
+TEST_F(OrientationFile, WeightsMayFollow) {
+  core::write_file(path_, "# phi1 Phi phi2 weights\n10 20 30 0.25\n40 50 60 0.75\n");
+  EXPECT_EQ(convention_of_file(path_), "euler-bunge");
+  const auto read = read_weighted_orientations(path_, "euler-bunge");
+  EXPECT_EQ(read.weights, (std::vector<double>{0.25, 0.75}));
+  ASSERT_EQ(read.orientations.size(), 2u);
+  EXPECT_LT(distance(read.orientations[1], core::from_bunge({40, 50, 60})), 1e-12);
+  core::write_file(path_, "1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  EXPECT_EQ(convention_of_file(path_), "quaternion");
+  EXPECT_EQ(read_weighted_orientations(path_, "quaternion").weights, std::vector<double>(3, 1.0));
+}
+
+TEST_F(OrientationFile, WeightsAreInAllLinesOrNone) {
+  for (const char* text : {"1 0 0 0 2\n1 0 0 0\n", "1 0 0 0\n1 0 0 0 2\n", "1 0 0 0 -1\n",
+                           "1 0 0 0 nan\n", "1 0 0 0 0\n", "", "1 0 0 0 1 1\n"}) {
+    core::write_file(path_, text);
+    EXPECT_THROW(read_weighted_orientations(path_, "quaternion"), core::InputError) << text;
+  }
+}
+
 }  // namespace
 }  // namespace polyslip::drivers
