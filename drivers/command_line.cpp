@@ -190,8 +190,10 @@ void add_stats(CLI::App& app, Command& c) {
 
 void add_report(CLI::App& app, Command& c) {
   CLI::App* verb = app.add_subcommand("report", "Show a run in one HTML file, report.html");
-  verb->add_option("folder", c.folder, "Run folder")->required();
-  add_overwrite(*verb, c, "Replace a report.html that is none of ours");
+  verb->add_option("folder", c.report.folder, "Run folder")->required();
+  verb->add_option("--taylor", c.report.taylor,
+                   "Folder of a Taylor model of the same load (polyslip taylor), shown beside");
+  verb->add_flag("--overwrite", c.report.overwrite, "Replace a report.html that is none of ours");
   verb->callback([&c] { c.verb = Verb::report; });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "drivers/analyse_verb.hpp"
+#include "drivers/report_verb.hpp"
 #include "drivers/stats_verb.hpp"
 
 namespace polyslip::drivers {
@@ -34,12 +35,13 @@ struct Command {
   int threads = 1;       ///< taylor: 0, all cores
   bool profile = false;  ///< run: --profile
   int jobs = 0;          ///< --jobs; 0: one a core
-  std::string folder;    ///< convert: run folder, or a file that becomes `out`; report: run folder
+  std::string folder;    ///< convert: run folder, or a file that becomes `out`
   std::string format;    ///< convert, of `out`; empty: by its extension
   double at_strain = 0;
   std::string to;
   std::string value = "average";
   StatsRequest stats;
+  ReportRequest report;
   AnalyseRequest analyse;
   CompareRequest compare;
 };

@@ -171,7 +171,7 @@ void RunJob::finish(bool completed) {
     summary.peak_rss_mb = memory;
     results::write_summary(path(results::summary_name), summary);
     if (completed) report_end(request_.folder, *states_, summary, log_);
-    if (options_.output.report) make_report(request_.folder, log_);
+    if (options_.output.report) make_report(request_.folder, options_.texture, log_);
   });
 }
 

@@ -6,9 +6,9 @@
 
 #include "core/rotation.hpp"
 #include "core/version.hpp"
+#include "drivers/report_verb.hpp"
 #include "results/names.hpp"
 #include "results/picture.hpp"
-#include "results/report/report.hpp"
 #include "results/state_file.hpp"
 
 namespace polyslip::drivers {
@@ -152,11 +152,9 @@ void report_end(const std::string& folder, const results::StateSeries& states,
   log.info("picture: {}", picture);
 }
 
-void make_report(const std::string& folder, core::Log& log) {
+void make_report(const std::string& folder, const TextureOptions& texture, core::Log& log) {
   try {
-    const auto path = results::report::write_report(
-        {.folder = folder, .page = results::report::page_path(), .overwrite = true});
-    log.info("report: {}", path);
+    log.info("report: {}", write_report({.folder = folder, .overwrite = true}, texture));
   } catch (const std::exception& e) {
     log.warning(fmt::format("no report: {}", e.what()));
   }

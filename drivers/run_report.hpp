@@ -44,6 +44,6 @@ void report_end(const std::string& folder, const results::StateSeries& states,
                 const results::Summary& summary, core::Log& log);
 
 /// Writes report.html. What prevents it is a warning: the results are there all the same.
-void make_report(const std::string& folder, core::Log& log);
+void make_report(const std::string& folder, const TextureOptions& texture, core::Log& log);
 
 }  // namespace polyslip::drivers

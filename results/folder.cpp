@@ -39,6 +39,8 @@ bool is_file_of_analysis(const std::string& name) { return is_analysis_file(name
 
 bool is_checkpoint_file(const std::string& name) { return checkpoint_number(name) >= 0; }
 
+bool is_file_of_figures(const std::string& name) { return is_figure_file(name); }
+
 template <class Test>
 void collect(const std::string& folder, std::string_view sub, Test is_ours,
              std::vector<std::string>& files) {
@@ -67,6 +69,7 @@ std::vector<std::string> run_files(const std::string& folder) {
   collect(folder, results_folder, is_result_file, files);
   collect(folder, checkpoints_folder, is_checkpoint_file, files);
   collect(folder, analysis_folder, is_file_of_analysis, files);
+  collect(folder, figures_folder, is_file_of_figures, files);
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -28,7 +28,7 @@ fails when the two differ.
 | `remeshing-001.csv`, ... | what each remeshing changed, grain by grain |
 | `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 (others by `[output] mesh_formats`; formats.md) |
 | `polycrystal.tess` | the regularised tessellation |
-| `report.html` | all of it in one page (report.md) |
+| `report.html`, `figures/` | all of it in one page, and its figures as files (report.md) |
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |
 | `profile.txt`, `profile-petsc.txt` | with `--profile`: CPU and wall time of the deformation by stage, messages between ranks; the same stages in PETSc's own log |

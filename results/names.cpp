@@ -29,4 +29,12 @@ bool is_analysis_file(std::string_view name) {
   return false;
 }
 
+bool is_figure_file(std::string_view name) {
+  if (name == texture_name || name == spreads_name || is_analysis_file(name)) return true;
+  for (const std::string_view stem : {"stress-strain", "steps", "means", "mesh-quality"})
+    for (const std::string_view extension : {".svg", ".csv"})
+      if (name.starts_with(stem) && name.substr(stem.size()) == extension) return true;
+  return false;
+}
+
 }  // namespace polyslip::results

@@ -44,6 +44,9 @@ inline constexpr std::string_view index_name = "index.json";  // in results/
 inline constexpr std::string_view tessellation_name = "polycrystal.tess";
 inline constexpr std::string_view picture_name = "polycrystal.png";
 inline constexpr std::string_view report_name = "report.html";
+inline constexpr std::string_view figures_folder = "figures";  // of the report
+/// Whether a file of this name in the figures folder is polyslip's.
+bool is_figure_file(std::string_view name);
 // of polyslip analyse
 inline constexpr std::string_view texture_name = "texture.csv";
 inline constexpr std::string_view spreads_name = "spreads.csv";

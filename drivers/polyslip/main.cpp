@@ -16,12 +16,12 @@
 #include "drivers/convert_file.hpp"
 #include "drivers/mesh_verb.hpp"
 #include "drivers/options.hpp"
+#include "drivers/report_verb.hpp"
 #include "drivers/run.hpp"
 #include "drivers/stats_verb.hpp"
 #include "drivers/taylor.hpp"
 #include "results/analysis/orientation_export.hpp"
 #include "results/convert.hpp"
-#include "results/report/report.hpp"
 #include "solver/petsc_session.hpp"
 
 namespace {
@@ -139,10 +139,7 @@ int obey(const Command& command) {
       drivers::print_statistics(command.stats);
       return drivers::exit_fine;
     case Verb::report:
-      std::cout << results::report::write_report({.folder = command.folder,
-                                                  .page = results::report::page_path(),
-                                                  .overwrite = command.overwrite})
-                << '\n';
+      std::cout << drivers::write_report(command.report) << '\n';
       return drivers::exit_fine;
     case Verb::reference:
       std::cout << drivers::deck_reference();

@@ -8,7 +8,6 @@
 #include "core/rotation.hpp"
 #include "core/version.hpp"
 #include "results/names.hpp"
-#include "results/report/encode.hpp"
 #include "results/report/scene.hpp"
 #include "results/state_file.hpp"
 #include "results/state_series.hpp"
@@ -45,8 +44,7 @@ StateDigest digest(const mesh::Snapshot& snapshot, const StateRecord& record,
   for (const double ratio : values.values.back()) d.quality.add(ratio);
   const Box box = box_of(surface, snapshot.mesh);
   d.box = {box.low, box.high};
-  blocks.push_back(
-      {d.block, base64(gzip(state_block(surface, snapshot.mesh, box, values, d.ranges)))});
+  blocks.push_back(make_block(d.block, state_block(surface, snapshot.mesh, box, values, d.ranges)));
   d.grain_orientation = std::move(values.grain_orientation);
   d.grain_volume = std::move(values.grain_volume);
   return d;
@@ -79,14 +77,45 @@ Json json_of(const StateDigest& s) {
           {"grain_volume", s.grain_volume}};
 }
 
-}  // namespace
+Json columns_of(const MacroTable& macro) {
+  Json columns = Json::object();
+  for (std::size_t i = 0; i < macro.names.size(); ++i) columns[macro.names[i]] = macro.columns[i];
+  return columns;
+}
 
-ReportData gather(const std::string& folder) {
-  const StateSeries series(folder);
+std::string title_of(const std::string& folder) {
+  return fs::weakly_canonical(folder).filename().string();
+}
+
+void add_textures(const Sources& sources, ReportData& data) {
+  data.texture = texture_of(analysis::analyse_folder(sources.folder, sources.texture));
+  data.texture_values = texture_json(data.texture, "texture", data.blocks);
+  data.spreads = spreads_json(data.texture.analysis);
+  if (sources.taylor.empty()) return;
+  const Texture taylor = texture_of(analysis::analyse_folder(sources.taylor, sources.texture));
+  data.taylor = {{"title", title_of(sources.taylor)},
+                 {"macro", columns_of(read_macro(in_folder(sources.taylor, macro_name)))},
+                 {"texture", texture_json(taylor, "taylor", data.blocks)}};
+}
+
+StateSeries states_of(const std::string& folder) {
+  StateSeries series(folder);
   if (series.states().empty())
     throw core::InputError(folder + ": holds no stored states; give the folder of a polyslip run");
+  if (series.without_mesh())
+    throw core::InputError(folder +
+                           ": is a Taylor model, which has no mesh to show; give it by --taylor "
+                           "beside a run");
+  return series;
+}
+
+}  // namespace
+
+ReportData gather(const Sources& sources) {
+  const std::string& folder = sources.folder;
+  const StateSeries series = states_of(folder);
   ReportData data;
-  data.title = fs::weakly_canonical(folder).filename().string();
+  data.title = title_of(folder);
   data.summary = text_if_there(in_folder(folder, summary_name));
   data.deck = text_if_there(in_folder(folder, deck_name));
   data.resolved_deck = text_if_there(in_folder(folder, resolved_deck_name));
@@ -99,9 +128,10 @@ ReportData gather(const std::string& folder) {
     if (new_mesh) surface = surface_of(snapshot.mesh);
     data.states.push_back(digest(snapshot, record, surface, data.states.size(), data.blocks));
     if (new_mesh)
-      data.blocks.push_back({data.states.back().mesh_block, base64(gzip(mesh_block(surface)))});
+      data.blocks.push_back(make_block(data.states.back().mesh_block, mesh_block(surface)));
     data.provenance = provenance_of(snapshot);
   }
+  add_textures(sources, data);
   return data;
 }
 
@@ -109,18 +139,19 @@ std::string json_text(const ReportData& data) {
   Json quantity_list = Json::array();
   for (const Quantity& q : quantities())
     quantity_list.push_back({{"name", q.name}, {"label", q.label}, {"unit", q.unit}});
-  Json macro = Json::object(), states = Json::array(), provenance = Json::object();
-  for (std::size_t i = 0; i < data.macro.names.size(); ++i)
-    macro[data.macro.names[i]] = data.macro.columns[i];
+  Json states = Json::array(), provenance = Json::object();
   for (const auto& state : data.states) states.push_back(json_of(state));
   for (const auto& [name, text] : data.provenance) provenance[name] = text;
   const Json json = {{"schema", "polyslip-report/1"},
                      {"title", data.title},
                      {"version", core::version()},
                      {"summary", data.summary.empty() ? Json() : Json::parse(data.summary)},
-                     {"macro", macro},
+                     {"macro", columns_of(data.macro)},
                      {"quantities", quantity_list},
                      {"states", states},
+                     {"texture", data.texture_values},
+                     {"spreads", data.spreads},
+                     {"taylor", data.taylor},
                      {"deck", data.deck},
                      {"resolved_deck", data.resolved_deck},
                      {"provenance", provenance}};

@@ -5,7 +5,7 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "results/names.hpp"
-#include "results/report/data.hpp"
+#include "results/report/figures.hpp"
 
 namespace polyslip::results::report {
 namespace {
@@ -39,12 +39,14 @@ void require_free(const std::string& path, bool overwrite) {
 
 std::string write_report(const ReportRequest& request) {
   const std::string page = read_page(request.page);
-  const std::string path = in_folder(request.folder, report_name);
+  const std::string& folder = request.sources.folder;
+  const std::string path = in_folder(folder, report_name);
   require_free(path, request.overwrite);
   const std::size_t at = page.find(place);
   if (at == std::string::npos || page.find(mark) == std::string::npos)
     throw core::InputError(request.page + ": is not the page of a report; build polyslip anew");
-  const ReportData data = gather(request.folder);
+  const ReportData data = gather(request.sources);
+  write_figures(in_folder(folder, figures_folder), data);
   core::FileWriter file(path);
   file.put(std::string_view(page).substr(0, at));
   file.put("<script type=\"application/json\" id=\"report-data\">" + guarded(json_text(data)) +

@@ -3,17 +3,20 @@
 
 #include <string>
 
+#include "results/report/data.hpp"
+
 namespace polyslip::results::report {
 
 struct ReportRequest {
-  std::string folder;  ///< of the run
-  std::string page;    ///< the empty page that the build made
+  Sources sources = {};
+  std::string page = {};  ///< the empty page that the build made
   bool overwrite = false;
 };
 
-/// Writes folder/report.html, whole or not at all, and returns its path. An earlier report is
-/// replaced, any other file of that name with `overwrite` only. InputError, one line, for a folder
-/// without results, a damaged file, or a build without the page.
+/// Writes report.html into the run's folder, whole or not at all, and returns its path; the figures
+/// as files go to figures/ beside it. An earlier report is replaced, any other file of that name
+/// with `overwrite` only. InputError, one line, for a folder without results, a damaged file, or a
+/// build without the page.
 std::string write_report(const ReportRequest& request);
 
 /// The page beside this very program.

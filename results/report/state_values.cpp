@@ -13,15 +13,7 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-enum Index { g, slip, equivalent_strain, von_mises, pressure, spread, radius_ratio };
-
-/// `stress`: plain components xx yy zz yz zx xy.
-double von_mises_of(const core::Vec6& stress) {
-  core::Mat3 s;
-  s << stress[0], stress[5], stress[4], stress[5], stress[1], stress[3], stress[4], stress[3],
-      stress[2];
-  return core::equivalent_stress(s);
-}
+enum Index { g, slip, equivalent_strain, mises, pressure, spread, radius_ratio };
 
 /// Means and volumes of the grains; elements are sorted by grain.
 void average_grains(const mesh::Mesh& mesh, StateValues& s) {
@@ -53,6 +45,13 @@ const std::array<Quantity, quantity_count>& quantities() {
   return all;
 }
 
+double von_mises(const core::Vec6& stress) {
+  core::Mat3 s;
+  s << stress[0], stress[5], stress[4], stress[5], stress[1], stress[3], stress[4], stress[3],
+      stress[2];
+  return core::equivalent_stress(s);
+}
+
 StateValues values_of(const mesh::Snapshot& snapshot) {
   ElementTable table = element_values(snapshot, ElementValue::average);
   StateValues s;
@@ -65,7 +64,7 @@ StateValues values_of(const mesh::Snapshot& snapshot) {
   s.values[pressure] = std::move(table.pressure);
   for (int e = 0; e < snapshot.mesh.element_count(); ++e) {
     const auto& mean = s.grain_orientation[snapshot.mesh.tetrahedron_cell[e]];
-    s.values[von_mises].push_back(von_mises_of(table.cauchy_stress[e]));
+    s.values[mises].push_back(von_mises(table.cauchy_stress[e]));
     s.values[spread].push_back(core::degrees_per_radian *
                                core::disorientation_angle(s.orientation[e], mean));
     s.values[radius_ratio].push_back(mesh::measure_element(snapshot.mesh, e).radius_ratio);

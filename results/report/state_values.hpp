@@ -17,6 +17,9 @@ struct Quantity {
 inline constexpr std::size_t quantity_count = 7;
 const std::array<Quantity, quantity_count>& quantities();
 
+/// sqrt(3/2 s:s) of plain components xx yy zz yz zx xy.
+double von_mises(const core::Vec6& stress);
+
 struct StateValues {
   std::vector<double> volume;                 ///< [element]
   std::vector<core::Quaternion> orientation;  ///< [element]

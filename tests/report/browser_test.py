@@ -167,6 +167,48 @@ class Report(unittest.TestCase):
         self.assertEqual(linear, [row["linear_iterations"] for row in self.macro])
         self.assertEqual(newton, [row["newton_iterations"] for row in self.macro])
 
+    def test_texture_is_that_of_polyslip_analyse(self):
+        to = self.run_folder.parent / "analysis"
+        subprocess.run([polyslip, "analyse", self.run_folder, "--to", to], check=True, stdout=subprocess.DEVNULL)
+        with open(to / "texture.csv") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len({row["strain"] for row in rows}), 4)
+        lines = self.browser.ask("document.querySelector('#components-intensity .plot').data"
+                                 ".map(({ legendgroup, x, y }) => [legendgroup, x, y])")
+        for name, strains, intensities in lines:
+            expected = [row for row in rows if row["component"] == name]
+            self.assertEqual(strains, [float(row["strain"]) for row in expected])
+            for shown, row in zip(intensities, expected):
+                self.assertAlmostEqual(shown, float(row["intensity"]), delta=1e-9)
+        # The pole figures of the last state are those of its file.
+        with open(to / "analysis/pole-figures-0.06.csv") as file:
+            poles = [row for row in csv.DictReader(file) if row["figure"] == "111"]
+        self.assertGreater(len(poles), 1000)
+        shown = self.browser.ask("(({ x, y, z }) => ({ x, y, z }))(document.querySelector('#pole-figures .plot').data[0])")
+        places = {(round(x, 9), round(y, 9)): z for y, row in zip(shown["y"], shown["z"])
+                  for x, z in zip(shown["x"], row)}
+        for row in poles:
+            z = places[round(float(row["x"]), 9), round(float(row["y"]), 9)]
+            self.assertAlmostEqual(z, float(row["density"]), delta=1e-5 * (1 + z))
+
+    def test_spreads_are_those_of_polyslip_analyse(self):
+        rows = numbers(self.run_folder / "figures/spread-summary.csv")
+        shown = self.browser.ask("(({ x, y }) => ({ x, y }))(document.querySelector('#grain-spreads .plot').data.at(-1))")
+        self.assertEqual(shown["x"], [row["strain"] for row in rows])
+        self.assertEqual(shown["y"], [row["mean"] for row in rows])
+        self.assertGreater(shown["y"][-1], 0.1)
+        r = self.browser.ask("document.querySelector('#spread-correlation .plot').layout.annotations[0].text")
+        self.assertEqual(r, f"r = {rows[-1]['correlation']:.3g}")
+
+    def test_figures_are_files_too(self):
+        names = {path.name for path in (self.run_folder / "figures").iterdir()}
+        for stem in ("stress-strain", "steps", "means", "mesh-quality", "beta-fibre", "pole-figures-0.06",
+                     "inverse-pole-figures-0.06", "odf-sections-0.06"):
+            for extension in (".svg", ".csv"):
+                self.assertIn(stem + extension, names)
+        rows = numbers(self.run_folder / "figures/stress-strain.csv")
+        self.assertEqual([row["strain"] for row in rows], [row["strain"] for row in self.macro])
+
     def test_remeshing_is_audited(self):
         text = self.browser.text("#audit")
         remeshing = self.summary["remeshings"][0]

@@ -38,6 +38,8 @@ TEST(RunFolder, AnEarlierRunIsKeptUnlessAsked) {
   results::prepare_run_folder(folder.path(), false);
   const std::vector<std::string> ours{"checkpoints/checkpoint-0001.h5",
                                       "deck.resolved.toml",
+                                      "figures/means.svg",
+                                      "figures/odf-sections-0.3.csv",
                                       "log.txt",
                                       "macro.csv",
                                       "mesh-000.msh",
@@ -49,8 +51,9 @@ TEST(RunFolder, AnEarlierRunIsKeptUnlessAsked) {
                                       "results/state-0000.h5",
                                       "results/state-0001.h5.part",
                                       "summary.json"};
-  const std::vector<std::string> others{"deck.toml", "notes.txt", "mesh-mine.msh",
-                                        "results/paper.pdf", "checkpoints/state-0000.h5"};
+  const std::vector<std::string> others{"deck.toml",        "notes.txt",
+                                        "mesh-mine.msh",    "results/paper.pdf",
+                                        "figures/mine.svg", "checkpoints/state-0000.h5"};
   for (const auto& name : ours) spit(folder / name, name);
   for (const auto& name : others) spit(folder / name, name);
   EXPECT_EQ(results::run_files(folder.path()), ours);

@@ -4,6 +4,8 @@ import { curves } from './parts/curves.js';
 import { headline } from './parts/headline.js';
 import { origin } from './parts/origin.js';
 import { polycrystal } from './parts/polycrystal.js';
+import { spreads } from './parts/spreads.js';
+import { texture } from './parts/texture.js';
 import { quality } from './parts/quality.js';
 import { work } from './parts/work.js';
 import { startTheme } from './theme.js';
@@ -12,7 +14,7 @@ startTheme();
 const main = document.getElementById('report');
 headline(report, main);
 const started = [];
-for (const part of [polycrystal, curves, quality, work, origin]) {
+for (const part of [polycrystal, curves, texture, spreads, quality, work, origin]) {
   const made = part(report);
   if (!made) continue;
   main.append(made.element);

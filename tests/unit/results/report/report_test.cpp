@@ -140,14 +140,16 @@ class Report : public ::testing::Test {
     std::filesystem::create_directories(folder_ / "run/results");
     results::StateSeries states(folder_ / "run");
     for (const double strain : {0.0, 0.25}) states.store(tests::fabricated_snapshot(1, strain));
-    results::MacroCsv::create(folder_ / "run/macro.csv").append({.strain = 0.25});
+    results::MacroCsv::create(folder_ / "run/macro.csv")
+        .append({.strain = 0.25, .step_size = 0.25});
     tests::spit(folder_ / "run/deck.toml", "# </script> & more\n");
     tests::spit(page_,
                 "<meta name=\"generator\" content=\"polyslip report\">\n"
                 "<!-- the data of the run -->\n<p>end</p>");
   }
   std::string write(bool overwrite = false) {
-    return write_report({.folder = folder_ / "run", .page = page_, .overwrite = overwrite});
+    return write_report(
+        {.sources = {.folder = folder_ / "run"}, .page = page_, .overwrite = overwrite});
   }
   std::string error() {
     try {
@@ -187,6 +189,9 @@ TEST_F(Report, HoldsTheStatesAndTheDeck) {
   const auto counts = state.at("quality").get<std::vector<long>>();
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0L), snapshot.mesh.element_count());
   EXPECT_EQ(state.at("grain_bunge").size(), 2u);
+  EXPECT_EQ(data.at("texture").at("states").size(), 2u);
+  EXPECT_EQ(data.at("spreads").at("states")[1].at("spread").size(), 2u);
+  EXPECT_TRUE(data.at("taylor").is_null());
   // Both states have one mesh.
   EXPECT_EQ(state.at("mesh_block"), data.at("states")[0].at("mesh_block"));
   const Surface surface = surface_of(snapshot.mesh);
@@ -209,7 +214,7 @@ TEST_F(Report, SaysWhatIsMissing) {
   page_ = folder_ / "page.html";
   tests::spit(page_, "another page");
   EXPECT_NE(error().find("is not the page of a report"), std::string::npos) << error();
-  EXPECT_THROW(gather(folder_ / "nowhere"), core::InputError);
+  EXPECT_THROW(gather({.folder = folder_ / "nowhere"}), core::InputError);
 }
 
 TEST(ReportScene, PositionsAndValuesComeBackToTheirLastDigit) {

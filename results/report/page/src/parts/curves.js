@@ -40,6 +40,13 @@ function stressStrain(report) {
     yy: macro.syy,
     zz: macro.szz,
   };
+  const taylor = report.taylor
+    ? [
+        ['stress along the load', report.taylor.macro.load_stress],
+        ['von Mises', vonMises(report.taylor.macro)],
+      ]
+    : [];
+  const line = { mode: 'lines', hovertemplate: '%{y:.3f} MPa at %{x:.4f}<extra>%{fullData.name}</extra>' };
   return figure({
     name: 'stress-strain',
     title: 'Stress against strain',
@@ -49,14 +56,22 @@ function stressStrain(report) {
     wide: true,
     height: 360,
     draw: () => ({
-      data: Object.entries(curve).map(([name, stress], i) => ({
-        ...pieces(macro, stress),
-        name,
-        mode: 'lines',
-        line: { width: i < 2 ? 2.2 : 1.3 },
-        visible: i < 2 ? true : 'legendonly',
-        hovertemplate: '%{y:.3f} MPa at %{x:.4f}<extra>%{fullData.name}</extra>',
-      })),
+      data: [
+        ...Object.entries(curve).map(([name, stress], i) => ({
+          ...pieces(macro, stress),
+          ...line,
+          name,
+          line: { width: i < 2 ? 2.2 : 1.3 },
+          visible: i < 2 ? true : 'legendonly',
+        })),
+        ...taylor.map(([name, stress], i) => ({
+          ...line,
+          x: report.taylor.macro.strain,
+          y: stress,
+          name: `${name}, Taylor`,
+          line: { width: 1.6, dash: 'dash', color: colour(`c${i}`) },
+        })),
+      ],
       layout: {
         xaxis: { title: { text: 'strain' }, rangemode: 'tozero' },
         yaxis: { title: { text: 'stress (MPa)' } },
