@@ -82,6 +82,8 @@ Json texture_json(const Texture& texture, const std::string& name, std::vector<B
   }
   return {{"half_width", options.half_width * core::degrees_per_radian},
           {"fraction_angle", options.fraction_angle * core::degrees_per_radian},
+          {"sample_symmetry",
+           options.symmetry == analysis::SampleSymmetry::none ? "none" : "orthorhombic"},
           {"grids", grids_json(texture.maps.front())},
           {"states", states}};
 }
@@ -103,7 +105,7 @@ Json spreads_json(const analysis::Analysis& a) {
                       {"spread", spread},
                       {"rotation", rotation}});
   }
-  return {{"inner", a.samples.front().inner}, {"states", states}};
+  return {{"states", states}};
 }
 
 }  // namespace polyslip::results::report

@@ -1,7 +1,7 @@
 // Texture: components, beta-fibre, pole figures, sections; a Taylor model's beside them.
 import { h } from '../dom.js';
 import { figure } from '../figure.js';
-import { number } from '../format.js';
+import { count, number } from '../format.js';
 import { maps } from '../maps.js';
 import { section as part } from '../section.js';
 import { colour } from '../theme.js';
@@ -230,10 +230,11 @@ function index(report) {
 export function texture(report) {
   if (!report.texture) return null;
   const last = report.texture.states.at(-1);
+  const symmetry = `${report.texture.sample_symmetry.replace('none', 'no')} sample symmetry`;
   return part(
     'texture',
     'Texture',
-    `${number(last.orientations, 7)} orientations, weighted by volume, no sample symmetry; texture index ` +
+    `${count(last.orientations)} orientations, weighted by volume, ${symmetry}; texture index ` +
       `${number(last.texture_index)} at strain ${number(last.strain)}. Densities in times random.`,
     poleFigures(report),
     inversePoleFigures(report),
