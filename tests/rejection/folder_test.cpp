@@ -22,6 +22,7 @@ final_strain = 0.002
 max_strain_increment = 0.001
 [output]
 checkpoint_every_strain = 0.001
+report = false
 )";
 
 /// A finished run in "run", made once; each test has a copy to damage.
