@@ -48,6 +48,14 @@ export function makeView(holder, onDraw) {
     request();
   };
   controls.addEventListener('change', request);
+  // A canvas is printed as it was last seen, in other colours perhaps; a picture of it is not.
+  const printed = new Image();
+  printed.className = 'printed';
+  printed.decoding = 'sync';
+  holder.append(printed);
+  addEventListener('beforeprint', () => {
+    printed.src = canvas.toDataURL();
+  });
   new ResizeObserver(resize).observe(holder);
 
   const turn = () => {
@@ -71,7 +79,7 @@ export function makeView(holder, onDraw) {
     },
     background(colour) {
       scene.background = new Color(colour);
-      request();
+      draw(); // at once: a print does not wait
     },
     /** Number of the triangle of `body` under the mouse, or -1. */
     pick(body, event) {
