@@ -171,11 +171,11 @@ void expect_faces_of_figure_7(int cubes) {
       papers_change += volume_change(volumes, cell_volumes(p)).rms / cubes;
       papers.add(p);
     }
-    const std::string at = "_" + std::to_string(i);
-    testing::Test::RecordProperty("ours_faces" + at, std::to_string(ours.mean_faces()));
-    testing::Test::RecordProperty("paper_faces" + at, std::to_string(papers.mean_faces()));
-    testing::Test::RecordProperty("ours_volumes" + at, std::to_string(our_change));
-    testing::Test::RecordProperty("paper_volumes" + at, std::to_string(papers_change));
+    const std::string at = std::to_string(i);
+    testing::Test::RecordProperty("ours_faces_" + at, std::to_string(ours.mean_faces()));
+    testing::Test::RecordProperty("paper_faces_" + at, std::to_string(papers.mean_faces()));
+    testing::Test::RecordProperty("ours_volumes_" + at, std::to_string(our_change));
+    testing::Test::RecordProperty("paper_volumes_" + at, std::to_string(papers_change));
     EXPECT_NEAR(ours.mean_faces(), paper[i], i == 0 ? 0.2 : 0.3) << lengths[i];
     EXPECT_GT(papers.mean_faces(), ours.mean_faces());
     EXPECT_GT(our_change, 0.01);
