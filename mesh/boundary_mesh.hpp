@@ -70,10 +70,8 @@ class BoundaryMesher {
   /// c_l of a grain.
   double grain_size(int grain) const { return sizes_.grains[grain]; }
   const Geometry& geometry() const { return geometry_; }
-  /// Whether it is one of a pair of translates: their meshes stay translates.
-  bool is_periodic_vertex(int vertex) const { return vertex_periodic_[vertex]; }
-  bool is_periodic_edge(int edge) const { return edge_periodic_[edge]; }
-  bool is_periodic_face(int face) const { return face_periodic_[face]; }
+  /// Itself if it is no slave.
+  int master_of_vertex(int vertex) const { return vertex_masters_[vertex]; }
   const core::Vec3& scale() const { return scale_; }
   /// The point of an edge at an arc length, exactly in the planes that the edge lies in.
   core::Vec3 edge_point(int edge, const CurvedEdge& curve, double arc) const;
@@ -84,6 +82,8 @@ class BoundaryMesher {
                                        const Eigen::Vector2d& place) const;
   /// Moves the nodes of an edge that is not copied to these arc lengths.
   void place_edge(int edge, std::vector<double> arcs);
+  /// Gives slaves their masters' meshes, after those have moved.
+  void renew_slaves();
   /// Moves the inner nodes of a face that is not copied, to these places in its plane; `positions`
   /// of all nodes, by number.
   void place_face(int face, const std::vector<Eigen::Vector2d>& inner_places,
@@ -111,8 +111,9 @@ class BoundaryMesher {
   /// Lets sizes, lengths and vertices of translates be the same.
   void join_translates();
   bool is_slave_edge(int edge) const { return edge_masters_[edge] != edge; }
-  bool is_slave_face(int face) const { return face_periodic_[face] && face_masters_[face] != face; }
+  bool is_slave_face(int face) const { return face_masters_[face] != face; }
   void copy_slave_edges();
+  void copy_slave_edge(const PeriodicPair& pair);
   void copy_slave_faces(std::vector<char>& changed);
   void copy_slave_face(const PeriodicPair& pair);
   /// Forbids an inner edge of a face; of a slave, that of its master. Whether it was allowed.
@@ -172,7 +173,6 @@ class BoundaryMesher {
   std::vector<core::Vec3> vertices_;
   ElementSizes sizes_;
   std::vector<int> vertex_masters_, edge_masters_, face_masters_;  ///< itself if it has none
-  std::vector<char> vertex_periodic_, edge_periodic_, face_periodic_;
   std::vector<double> edge_lengths_;
   std::vector<std::array<double, 2>> end_sizes_;  ///< [edges] sizes that its grading starts from
   std::vector<EdgeMesh> edges_;

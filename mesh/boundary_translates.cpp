@@ -11,19 +11,11 @@ namespace {
 
 using core::Vec3;
 
-struct Masters {
-  std::vector<int> of;
-  std::vector<char> periodic;
-};
-
-Masters masters(const std::vector<PeriodicPair>& pairs, std::size_t count) {
-  Masters m{std::vector<int>(count), std::vector<char>(count, false)};
-  std::iota(m.of.begin(), m.of.end(), 0);
-  for (const auto& pair : pairs) {
-    m.of[pair.slave] = pair.master;
-    m.periodic[pair.slave] = m.periodic[pair.master] = true;
-  }
-  return m;
+std::vector<int> masters(const std::vector<PeriodicPair>& pairs, std::size_t count) {
+  std::vector<int> of(count);
+  std::iota(of.begin(), of.end(), 0);
+  for (const auto& pair : pairs) of[pair.slave] = pair.master;
+  return of;
 }
 
 template <class T>
@@ -37,14 +29,9 @@ void let_least_hold(const std::vector<PeriodicPair>& pairs, std::vector<T>& valu
 
 void BoundaryMesher::join_translates() {
   const Topology& t = geometry_.topology;
-  const auto take = [](Masters m, std::vector<int>& of, std::vector<char>& periodic) {
-    of = std::move(m.of);
-    periodic = std::move(m.periodic);
-  };
-  take(masters(t.periodic.vertices, static_cast<std::size_t>(t.vertex_count)), vertex_masters_,
-       vertex_periodic_);
-  take(masters(t.periodic.edges, t.edges.size()), edge_masters_, edge_periodic_);
-  take(masters(t.periodic.faces, t.faces.size()), face_masters_, face_periodic_);
+  vertex_masters_ = masters(t.periodic.vertices, static_cast<std::size_t>(t.vertex_count));
+  edge_masters_ = masters(t.periodic.edges, t.edges.size());
+  face_masters_ = masters(t.periodic.faces, t.faces.size());
   let_least_hold(t.periodic.edges, edge_lengths_);
   let_least_hold(t.periodic.edges, sizes_.edges);
   let_least_hold(t.periodic.faces, sizes_.faces);
@@ -55,14 +42,23 @@ void BoundaryMesher::join_translates() {
 void BoundaryMesher::copy_slave_edges() {
   for (const auto& pair : geometry_.topology.periodic.edges) {
     if (!edge_stale_[pair.master] && !edge_stale_[pair.slave]) continue;
-    EdgeMesh& m = edges_[pair.slave] = edges_[pair.master];
-    for (Vec3& x : m.nodes) x = translated(x, pair.shift, geometry_.size);
-    for (Vec3& x : m.mids) x = translated(x, pair.shift, geometry_.size);
-    const auto& ends = geometry_.topology.edges[pair.slave].vertices;
-    m.nodes.front() = vertices_[ends[0]];
-    m.nodes.back() = vertices_[ends[1]];
+    copy_slave_edge(pair);
     edge_stale_[pair.slave] = true;
   }
+}
+
+void BoundaryMesher::copy_slave_edge(const PeriodicPair& pair) {
+  EdgeMesh& m = edges_[pair.slave] = edges_[pair.master];
+  for (Vec3& x : m.nodes) x = translated(x, pair.shift, geometry_.size);
+  for (Vec3& x : m.mids) x = translated(x, pair.shift, geometry_.size);
+  const auto& ends = geometry_.topology.edges[pair.slave].vertices;
+  m.nodes.front() = vertices_[ends[0]];
+  m.nodes.back() = vertices_[ends[1]];
+}
+
+void BoundaryMesher::renew_slaves() {
+  for (const auto& pair : geometry_.topology.periodic.edges) copy_slave_edge(pair);
+  for (const auto& pair : geometry_.topology.periodic.faces) copy_slave_face(pair);
 }
 
 void BoundaryMesher::copy_slave_faces(std::vector<char>& changed) {

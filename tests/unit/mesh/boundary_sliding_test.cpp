@@ -44,6 +44,35 @@ class BoundarySliding : public testing::Test {
   std::unique_ptr<MesherPool> pool_ = MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
 };
 
+// All faces of the body are in pairs: without those that slide together little would.
+TEST_F(BoundarySliding, MovesTranslatesTogether) {
+  PolycrystalOptions polycrystal{.grains = 12, .seed = 3};
+  polycrystal.periodic = {true, true, true};
+  auto t = voronoi_tessellation(polycrystal);
+  regularise(t, {});
+  const auto geometry = geometry_of(t);
+  MeshingOptions options;
+  options.element_size = 0.4;
+  options.slide_boundary = false;
+  const Mesh before = mesh(geometry, options);
+  options.slide_boundary = true;
+  const Mesh after = mesh(geometry, options);
+  ASSERT_NO_THROW(check(after));
+  EXPECT_GT(mean_worst(after), mean_worst(before) + 0.02);
+  EXPECT_GE(quality(after).min_radius_ratio, quality(before).min_radius_ratio);
+  int moved = 0;
+  for (const auto& pair : after.periodic_nodes) {
+    EXPECT_EQ(after.nodes[pair.slave],
+              translated(after.nodes[pair.master], pair.shift, after.size));
+    moved += after.nodes[pair.slave] != before.nodes[pair.slave];
+  }
+  EXPECT_GT(moved, static_cast<int>(after.periodic_nodes.size()) / 2);
+  for (const int jobs : {1, 3}) {
+    options.jobs = jobs;
+    EXPECT_EQ(mesh(geometry, options).nodes, after.nodes);
+  }
+}
+
 TEST_F(BoundarySliding, RaisesTheWorstElementsOfGrainsAndKeepsTheBox) {
   const auto tessellation = polycrystal(40, 3);
   const auto geometry = geometry_of(tessellation);
