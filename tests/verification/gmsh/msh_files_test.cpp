@@ -46,40 +46,40 @@ TEST_F(GmshFiles, PeriodicMeshesGoThereAndBack) {
   meshing.element_size = 0.7;
   MeshingReport report;
   const Mesh mesh = mesh_geometry(geometry_of(t), meshing, core::Vec3::Ones(), *pool, report);
-  for (const bool newest : {false, true})
-    for (const bool binary : {false, true}) {
-      SCOPED_TRACE(fmt::format("newest {} binary {}", newest, binary));
-      write_msh(mesh, path_, {newest, binary});
-      gmsh::clear();
-      gmsh::open(path_);
-      for (const auto& pair : mesh.topology.periodic.faces) {
-        int master = 0;
-        std::vector<std::size_t> nodes, of_master;
-        std::vector<double> motion;
-        gmsh::model::mesh::getPeriodicNodes(2, pair.slave + 1, master, nodes, of_master, motion);
-        EXPECT_EQ(master, pair.master + 1);
-        ASSERT_EQ(motion.size(), 16u);
-        for (int k = 0; k < 3; ++k) EXPECT_EQ(motion[4 * k + 3], pair.shift[k] * mesh.size[k]);
-        ASSERT_GT(nodes.size(), 6u);
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-          EXPECT_LT((mesh.nodes[nodes[i] - 1] -
-                     translated(mesh.nodes[of_master[i] - 1], pair.shift, mesh.size))
-                        .norm(),
-                    1e-12);
-      }
-      for (const double version : {2.2, 4.1})
-        for (const int type : {0, 1}) {
-          gmsh::option::setNumber("Mesh.MshFileVersion", version);
-          gmsh::option::setNumber("Mesh.Binary", type);
-          gmsh::option::setNumber("Mesh.SaveAll", 1);
-          gmsh::write(path_);
-          const MeshFile read = read_msh(path_);
-          EXPECT_EQ(read.mesh.element_count(), mesh.element_count());
-          EXPECT_EQ(read.mesh.domain.periodic, mesh.domain.periodic);
-          EXPECT_EQ(read.mesh.periodic_nodes.size(), mesh.periodic_nodes.size());
-          EXPECT_EQ(read.mesh.topology.periodic.faces.size(), mesh.topology.periodic.faces.size());
-        }
+  // Of format 2.2 Gmsh 4.8 keeps the nodes but not the pairs, of its own files neither.
+  for (const bool binary : {false, true}) {
+    SCOPED_TRACE(fmt::format("binary {}", binary));
+    write_msh(mesh, path_, {.newest = true, .binary = binary});
+    gmsh::clear();
+    gmsh::open(path_);
+    for (const auto& pair : mesh.topology.periodic.faces) {
+      int master = 0;
+      std::vector<std::size_t> nodes, of_master;
+      std::vector<double> motion;
+      gmsh::model::mesh::getPeriodicNodes(2, pair.slave + 1, master, nodes, of_master, motion);
+      EXPECT_EQ(master, pair.master + 1);
+      ASSERT_EQ(motion.size(), 16u);
+      for (int k = 0; k < 3; ++k) EXPECT_EQ(motion[4 * k + 3], pair.shift[k] * mesh.size[k]);
+      ASSERT_GE(nodes.size(), 6u);
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        EXPECT_LT((mesh.nodes[nodes[i] - 1] -
+                   translated(mesh.nodes[of_master[i] - 1], pair.shift, mesh.size))
+                      .norm(),
+                  1e-12);
     }
+    for (const double version : {2.2, 4.1})
+      for (const int type : {0, 1}) {
+        gmsh::option::setNumber("Mesh.MshFileVersion", version);
+        gmsh::option::setNumber("Mesh.Binary", type);
+        gmsh::option::setNumber("Mesh.SaveAll", 1);
+        gmsh::write(path_);
+        const MeshFile read = read_msh(path_);
+        EXPECT_EQ(read.mesh.element_count(), mesh.element_count());
+        EXPECT_EQ(read.mesh.domain.periodic, mesh.domain.periodic);
+        EXPECT_EQ(read.mesh.periodic_nodes.size(), mesh.periodic_nodes.size());
+        EXPECT_EQ(read.mesh.topology.periodic.faces.size(), mesh.topology.periodic.faces.size());
+      }
+  }
 }
 
 TEST_F(GmshFiles, GoThereAndBack) {
