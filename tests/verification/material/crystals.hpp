@@ -2,6 +2,8 @@
 // Orientations by plane and direction, materials for one purpose, and slip of a single crystal.
 
 #include <array>
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/rotation.hpp"
@@ -17,6 +19,33 @@ inline core::Quaternion ideal_orientation(const core::Vec3& plane, const core::V
   core::Mat3 sample_in_crystal;  // columns: RD, TD, ND in crystal axes
   sample_in_crystal << x, z.cross(x), z;
   return core::from_matrix(sample_in_crystal.transpose());
+}
+
+/// Rotation with the crystal direction `axis` along z.
+inline core::Quaternion with_axis_along_z(const core::Vec3& axis) {
+  const core::Vec3 other =
+      axis.cross(std::abs(axis[0]) < 0.5 * axis.norm() ? core::Vec3::UnitX() : core::Vec3::UnitY());
+  return ideal_orientation(axis, other);
+}
+
+/// A single crystal in plane strain: closed forms in the rate-independent limit.
+struct Ideal {
+  std::string name;
+  core::Vec3 plane, direction;
+  double limit;      // sum|gamma|/|eps33| as m -> 0
+  double tolerance;  // of the limit: half its last printed digit, and 2e-4 for m = 0.02
+  double at_012;     // the same at m = 0.12; 0: not known
+};
+
+inline std::vector<Ideal> ideals() {
+  const double root6 = std::sqrt(6.0);
+  return {{"cube", {0, 0, 1}, {1, 0, 0}, root6, 2e-4, 2.4571},
+          {"Goss", {0, 1, 1}, {1, 0, 0}, root6, 2e-4, 0},
+          {"brass", {0, 1, 1}, {2, 1, -1}, 4 * root6 / 3, 2e-4, 3.2739},
+          {"copper", {1, 1, 2}, {1, 1, -1}, 1.5 * root6, 2e-4, 3.6831},
+          {"S", {1, 2, 3}, {6, 3, -4}, 3.486, 7e-4, 0},
+          {"D", {4, 4, 11}, {11, 11, -8}, 3.530, 7e-4, 3.5367},
+          {"rotated", {0, 1, 1}, {0, 1, -1}, 2 * root6, 2e-4, 0}};
 }
 
 /// So stiff that elasticity is over after a strain of 1e-7, and without hardening.

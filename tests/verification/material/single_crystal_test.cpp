@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
 
 #include "crystals.hpp"
 
@@ -13,15 +12,9 @@ namespace {
 using namespace polyslip;
 using material::test::ideal_orientation;
 using material::test::steady_flow;
+using material::test::with_axis_along_z;
 
 const double root6 = std::sqrt(6.0);
-
-/// Rotation with the crystal direction `axis` along z.
-core::Quaternion with_axis_along_z(const core::Vec3& axis) {
-  const core::Vec3 other =
-      axis.cross(std::abs(axis[0]) < 0.5 * axis.norm() ? core::Vec3::UnitX() : core::Vec3::UnitY());
-  return ideal_orientation(axis, other);
-}
 
 TEST(Tension, Axis001HasEightEqualSystemsAndNoSpin) {
   for (const double m : {0.05, 0.02, 0.12}) {
@@ -46,26 +39,8 @@ TEST(Tension, Axis111HasSixEqualSystemsAndNoSpin) {
   }
 }
 
-struct Ideal {
-  std::string name;
-  core::Vec3 plane, direction;
-  double limit;      // sum|gamma|/|eps33| as m -> 0
-  double tolerance;  // of the limit: half its last printed digit, and 2e-4 for m = 0.02
-  double at_012;     // the same at m = 0.12; 0: not known
-};
-
-std::vector<Ideal> ideals() {
-  return {{"cube", {0, 0, 1}, {1, 0, 0}, root6, 2e-4, 2.4571},
-          {"Goss", {0, 1, 1}, {1, 0, 0}, root6, 2e-4, 0},
-          {"brass", {0, 1, 1}, {2, 1, -1}, 4 * root6 / 3, 2e-4, 3.2739},
-          {"copper", {1, 1, 2}, {1, 1, -1}, 1.5 * root6, 2e-4, 3.6831},
-          {"S", {1, 2, 3}, {6, 3, -4}, 3.486, 7e-4, 0},
-          {"D", {4, 4, 11}, {11, 11, -8}, 3.530, 7e-4, 3.5367},
-          {"rotated", {0, 1, 1}, {0, 1, -1}, 2 * root6, 2e-4, 0}};
-}
-
 TEST(PlaneStrain, SlipOfIdealOrientations) {
-  for (const auto& ideal : ideals()) {
+  for (const auto& ideal : material::test::ideals()) {
     const auto q = ideal_orientation(ideal.plane, ideal.direction);
     const auto flow = steady_flow(0.02, q, material::test::plane_strain());
     ASSERT_EQ(flow.failed, 0) << ideal.name;
