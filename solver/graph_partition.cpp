@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <tuple>
 
 #include "core/error.hpp"
@@ -78,7 +79,9 @@ std::vector<int> partition_elements(const mesh::Mesh& mesh, int ranks) {
   check(MatPartitioningSetAdjacency(partitioning.get(), graph.get()));
   check(MatPartitioningSetType(partitioning.get(), MATPARTITIONINGPTSCOTCH));
   check(MatPartitioningSetNParts(partitioning.get(), ranks));
-  SCOTCH_randomReset();  // the same parts whatever was cut before
+  // The same parts in every process and whatever was cut before: Scotch's threads race otherwise.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
+  SCOTCH_randomReset();
   IsHandle parts;
   check(MatPartitioningApply(partitioning.get(), parts.out()));
   const PetscInt* ranks_of = nullptr;
