@@ -178,6 +178,7 @@ max_grain_volume_change = 0.01
 element = "displacement"
 quadrature_points = 8
 newton_tolerance = 1e-9
+velocity_tolerance = 1e-5
 max_newton_iterations = 30
 linear_tolerance = 1e-8
 max_linear_iterations = 400
@@ -285,6 +286,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.solver.element, "displacement");
   EXPECT_EQ(o.solver.quadrature_points, 8);
   EXPECT_EQ(o.solver.newton_tolerance, 1e-9);
+  EXPECT_EQ(o.solver.velocity_tolerance, 1e-5);
   EXPECT_EQ(o.solver.max_newton_iterations, 30);
   EXPECT_EQ(o.solver.linear_tolerance, 1e-8);
   EXPECT_EQ(o.solver.max_linear_iterations, 400);
