@@ -22,7 +22,7 @@ using core::Vec3;
 
 /// Rounds in which faces of grains that could not be meshed are copied (section 2.3.3).
 constexpr int copy_rounds = 4;
-constexpr int volume_corrections = 2;
+constexpr int volume_corrections = 5;
 
 /// The grains of an undeformed polycrystal fill its domain, but for rounding.
 void check_domain(const Mesh& mesh, int threads) {
