@@ -237,9 +237,9 @@ class Opener {
 
 }  // namespace
 
-DeformedRegularisation regularise_deformed(Mesh& mesh, const Vec3& isotropy,
+DeformedRegularisation regularise_deformed(Mesh& mesh, const Vec3& scale,
                                            const DeformedRegularisationOptions& options) {
-  const auto result = Opener(mesh, isotropy, options).run();
+  const auto result = Opener(mesh, scale, options).run();
   if (result.elements_before == 0) return result;
   try {
     mend_curved_elements(mesh);

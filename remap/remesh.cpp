@@ -21,7 +21,7 @@ core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options
   return scale;
 }
 
-mesh::Geometry regularised_geometry(const mesh::Mesh& old,
+mesh::Geometry regularised_geometry(const mesh::Mesh& old, const RemeshingOptions& remeshing,
                                     mesh::DeformedRegularisation& regularisation) {
   // Nodes move no farther than it takes, for volumes' sake.
   constexpr double farthest = 0.5;
@@ -29,7 +29,7 @@ mesh::Geometry regularised_geometry(const mesh::Mesh& old,
   mesh::Mesh regular;
   do {
     regular = old;
-    regularisation = mesh::regularise_deformed(regular, mesh::isotropic_scale(old), options);
+    regularisation = mesh::regularise_deformed(regular, meshing_scale(old, remeshing), options);
     options.largest_move *= 2;
   } while (regularisation.elements_after > 0 && options.largest_move <= farthest);
   mesh::Geometry geometry = mesh::geometry_of(regular);
@@ -42,7 +42,7 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
                       const std::function<void(const std::string&)>& log) {
   report = {};
   report.strain = old.strain;
-  mesh::Geometry geometry = regularised_geometry(old.mesh, report.regularisation);
+  mesh::Geometry geometry = regularised_geometry(old.mesh, options, report.regularisation);
   mesh::Mesh mesh = mesh::mesh_geometry(geometry, meshing, meshing_scale(old.mesh, options), pool,
                                         report.meshing);
   for (const std::string& fault : report.meshing.faults) log(fault);

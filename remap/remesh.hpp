@@ -71,9 +71,9 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
 /// where it has become longer.
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options);
 
-/// The shapes of a worn mesh after the regularisation of what closes; its grains' volumes as they
-/// were.
-mesh::Geometry regularised_geometry(const mesh::Mesh& old,
+/// The shapes of a worn mesh after the regularisation of what closes, in the frame of sizes; its
+/// grains' volumes as they were.
+mesh::Geometry regularised_geometry(const mesh::Mesh& old, const RemeshingOptions& options,
                                     mesh::DeformedRegularisation& regularisation);
 
 }  // namespace polyslip::remap

@@ -99,8 +99,8 @@ bool remesh(const Options& o, double strain, mesh::Mesh& mesh, mesh::MesherPool&
   mesh::MeshingReport report;
   mesh::DeformedRegularisation regular;
   try {
-    mesh = mesh::mesh_geometry(remap::regularised_geometry(mesh, regular), o.meshing, frame, pool,
-                               report);
+    mesh = mesh::mesh_geometry(remap::regularised_geometry(mesh, o.remeshing, regular), o.meshing,
+                               frame, pool, report);
     mesh::check(mesh);
   } catch (const std::exception& e) {
     fmt::print(
