@@ -75,6 +75,15 @@ void write_file(const std::string& path, std::string_view content) {
   publish_part(path);
 }
 
+void require_room(const std::string& path, std::uint64_t bytes) {
+  const std::string part = part_path(path);
+  Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (!file) throw system_error(path, "cannot write", errno);
+  const int error = ::posix_fallocate(file.get(), 0, static_cast<off_t>(bytes));
+  if (error != 0) drop_part(path, "cannot write", error);
+  if (::ftruncate(file.get(), 0) != 0) drop_part(path, "cannot write", errno);
+}
+
 FileWriter::FileWriter(std::string path) : path_(std::move(path)) {
   file_ = ::open(part_path(path_).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file_ < 0) throw system_error(path_, "cannot write", errno);

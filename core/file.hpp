@@ -2,6 +2,7 @@
 // Files that are either whole or not there.
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,6 +18,10 @@ void publish_part(const std::string& path);
 
 /// Writes `content` to `path`, atomically, as above. A full disk is an InputError.
 void write_file(const std::string& path, std::string_view content);
+
+/// InputError unless so many bytes can be written beside `path` now; tried by allocating them in
+/// its part file, which is left empty. For libraries that do not survive a full disk.
+void require_room(const std::string& path, std::uint64_t bytes);
 
 /// A file written piece by piece, for what is too large to be held as one text. It is built at
 /// part_path(path) and gets its name by `finish`; without that, or after an error, nothing is left

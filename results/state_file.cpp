@@ -200,6 +200,17 @@ void write_all(hdf5::File& file, const mesh::Snapshot& s) {
   }
 }
 
+/// Bytes that the file will take, and some more.
+std::uint64_t room_for(const mesh::Snapshot& s) {
+  constexpr std::uint64_t a_node = 6 * 8, an_element = 2 * 40 + 4 + 15 * 8 + 3;
+  constexpr std::uint64_t a_triangle = 28, a_line = 16, overhead = 1 << 18;
+  std::uint64_t bytes = s.mesh.nodes.size() * a_node + s.mesh.tetrahedra.size() * an_element +
+                        s.mesh.triangles.size() * a_triangle + s.mesh.lines.size() * a_line;
+  for (const auto& field : s.fields) bytes += 8 * field.values.size();
+  for (const auto& [name, text] : s.provenance) bytes += text.size();
+  return bytes + bytes / 16 + overhead;
+}
+
 /// The lists that `starts` cuts `flat` into.
 std::vector<std::vector<int>> lists_of(const Ints& starts, const Ints& flat,
                                        const std::string& path) {
@@ -291,6 +302,7 @@ std::vector<mesh::Field> read_fields(const hdf5::File& file, TableReader& r, int
 
 void write_state(const std::string& path, const mesh::Snapshot& snapshot) {
   const std::string part = core::part_path(path);
+  core::require_room(path, room_for(snapshot));  // HDF5 crashes on a full disk
   auto file = hdf5::File::create(part, header_size);
   try {
     write_all(file, snapshot);
