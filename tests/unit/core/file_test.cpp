@@ -44,6 +44,14 @@ TEST_F(File, WritesAndReadsBackAndLeavesNoPart) {
   EXPECT_FALSE(fs::exists(part_path(path("a"))));
 }
 
+TEST_F(File, RoomIsFoundOrNot) {
+  EXPECT_NO_THROW(require_room(path("state"), 100'000));
+  EXPECT_EQ(fs::file_size(part_path(path("state"))), 0u);
+  EXPECT_THROW(require_room(path("state"), std::uint64_t(1) << 60), InputError);
+  EXPECT_FALSE(fs::exists(part_path(path("state"))));
+  EXPECT_THROW(require_room(path("no/state"), 1), InputError);
+}
+
 TEST_F(File, MissingFileAndFolderAreNamed) {
   EXPECT_EQ(error_of([&] { read_text(path("none")); }), path("none") + ": no such file");
   EXPECT_EQ(error_of([&] { write_file(path("no/where"), "x"); }),
