@@ -111,8 +111,8 @@ def main(run, page, name):
             f"{grains} grains, {elements} elements at first ({elements / grains:.0f} a grain), "
             f"{summary['elements_final']} at last, to strain {summary['final_strain']:.4g}, remeshed at "
             f"{remeshings}; {summary['steps']} steps, {sum(summary['cpu_s'].values()):.0f} s of CPU. "
-            f"Textures and spreads of the {inner} inner grains, the Taylor model of all {grains} initial "
-            "orientations. Definitions: [texture.md](texture.md).", "", "## Textures", ""]
+            f"Textures of all grains and of the Taylor model of their initial orientations, spreads of the {inner} "
+            "inner grains. Definitions: [texture.md](texture.md).", "", "## Textures", ""]
     text += findings(run) + [""] + texture_table(run)
     text += ["", "## In-grain spreads", ""] + spread_table(run) + [""] + correlation_table(run)
     text += ["", f"The paper has 1,972 inner grains at 136 elements a grain. Fewer elements a grain "
