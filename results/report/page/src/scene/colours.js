@@ -23,13 +23,15 @@ const viridis = [
   [253, 231, 37],
 ];
 
-/** Of a share from 0 to 1; grey for NaN. */
-export function ramp(share) {
-  if (Number.isNaN(share)) return [140, 140, 140];
-  const at = Math.min(Math.max(share, 0), 1) * (viridis.length - 1);
+const grey = [140, 140, 140];
+const shades = Array.from({ length: 1024 }, (_, n) => {
+  const at = (n / 1023) * (viridis.length - 1);
   const i = Math.min(Math.floor(at), viridis.length - 2);
   return viridis[i].map((c, k) => c + (at - i) * (viridis[i + 1][k] - c));
-}
+});
+
+/** Of a share from 0 to 1; grey for NaN. */
+export const ramp = (share) => shades[Math.round(1023 * Math.min(Math.max(share, 0), 1))] ?? grey;
 
 export const rampGradient = `linear-gradient(to right, ${viridis.map((c) => `rgb(${c.join()})`).join()})`;
 
