@@ -30,9 +30,9 @@ const std::string grown =
 const std::string meshed = "[mesh]\nelement_size = 0.8\nfile = \"meshed/mesh-000.msh\"\n";
 const std::string to_the_end = "final_strain = 0.06\n";
 const std::string wears_soon = "radius_ratio_share = 0.995\nmin_interval = 0.025\n";
-/// After a reversal three iterations are not enough for steps this large, on an old mesh.
+/// Seven iterations are enough for steps this large from zero stress, but not after a reversal.
 const std::string reverses =
-    "initial_strain_increment = 5e-4\nmin_strain_increment = 4e-4\n"
+    "initial_strain_increment = 3e-3\nmin_strain_increment = 2.4e-3\n"
     "[[loading.stage]]\nstrain = 0.02\n[[loading.stage]]\nstrain = 0.01\n";
 
 /// The variable that makes meshers fail, while it lives.
@@ -108,7 +108,7 @@ TEST(Remeshing, OfWornElementsComesAgainAfterAKill) {
 
 TEST(Remeshing, ComesWhenNoStepConverges) {
   const Sandbox sandbox;
-  run_deck(sandbox, 0, deck_of(grown, reverses, "", "max_newton_iterations = 3\n"), "run");
+  run_deck(sandbox, 0, deck_of(grown, reverses, "", "max_newton_iterations = 7\n"), "run");
   ASSERT_FALSE(HasFailure());
   const json s = summary_of(sandbox);
   ASSERT_EQ(s.at("remeshings").size(), 1u);
@@ -154,7 +154,7 @@ TEST(Remeshing, ThatFailsLeavesTheOldMesh) {
 TEST(Remeshing, ThatFailsWhereNoStepConvergesStopsTheRun) {
   const Sandbox sandbox;
   make_first_mesh(sandbox);
-  sandbox.write("run.toml", deck_of(meshed, reverses, "", "max_newton_iterations = 3\n"));
+  sandbox.write("run.toml", deck_of(meshed, reverses, "", "max_newton_iterations = 7\n"));
   {
     const MesherFaults faults("gmsh-hxt:1:throw,gmsh-delaunay:1:throw,netgen:1:throw");
     const Outcome outcome = run_polyslip({"run", "run.toml", "--out", "run"}, sandbox.path());

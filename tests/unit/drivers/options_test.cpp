@@ -173,6 +173,7 @@ max_grain_rotation = 4
 max_grain_spread_change = 1.5
 max_grain_g_change = 0.03
 orthotropic_share = 0.5
+lengthening_share = 0.25
 max_grain_volume_change = 0.01
 [solver]
 element = "displacement"
@@ -282,6 +283,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.remeshing.max_grain_spread_change, 1.5);
   EXPECT_EQ(o.remeshing.max_grain_g_change, 0.03);
   EXPECT_EQ(o.remeshing.orthotropic_share, 0.5);
+  EXPECT_EQ(o.remeshing.lengthening_share, 0.25);
   EXPECT_EQ(o.remeshing.max_grain_volume_change, 0.01);
   EXPECT_EQ(o.solver.element, "displacement");
   EXPECT_EQ(o.solver.quadrature_points, 8);

@@ -54,6 +54,7 @@ TEST(RunFolder, AnEarlierRunIsKeptUnlessAsked) {
   const std::vector<std::string> others{"deck.toml",        "notes.txt",
                                         "mesh-mine.msh",    "results/paper.pdf",
                                         "figures/mine.svg", "checkpoints/state-0000.h5"};
+  fs::create_directory(folder / "figures");
   for (const auto& name : ours) spit(folder / name, name);
   for (const auto& name : others) spit(folder / name, name);
   EXPECT_EQ(results::run_files(folder.path()), ours);
