@@ -46,7 +46,7 @@ TEST_F(GmshFiles, PeriodicMeshesGoThereAndBack) {
   meshing.element_size = 0.7;
   MeshingReport report;
   const Mesh mesh = mesh_geometry(geometry_of(t), meshing, core::Vec3::Ones(), *pool, report);
-  // Of format 2.2 Gmsh 4.8 keeps the nodes but not the pairs, of its own files neither.
+  // Of format 2.2 Gmsh 4.8 keeps the nodes but not the pairs.
   for (const bool binary : {false, true}) {
     SCOPED_TRACE(fmt::format("binary {}", binary));
     write_msh(mesh, path_, {.newest = true, .binary = binary});
