@@ -2,6 +2,7 @@
 
 #include <spdlog/logger.h>
 #include <spdlog/sinks/basic_file_sink.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,14 @@ namespace {
 // Seconds between two plain lines of progress, and between two updates of a terminal's.
 constexpr double plain_interval = 10;
 constexpr double terminal_interval = 0.2;
+
+// Whether somebody looks at it: mpirun gives its ranks a terminal of no width, whatever it writes
+// to itself, and lines that overwrite each other would fill a log.
+bool is_terminal(int descriptor) {
+  winsize size{};
+  return ::isatty(descriptor) == 1 && ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 &&
+         size.ws_col > 0;
+}
 
 }  // namespace
 
@@ -51,7 +60,7 @@ struct Log::Impl {
   }
 };
 
-Log::Log() : impl_(std::make_unique<Impl>()) { impl_->terminal = ::isatty(STDOUT_FILENO) == 1; }
+Log::Log() : impl_(std::make_unique<Impl>()) { impl_->terminal = is_terminal(STDOUT_FILENO); }
 Log::Log(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Log::Log(Log&&) noexcept = default;
 Log& Log::operator=(Log&&) noexcept = default;

@@ -1,7 +1,11 @@
 #include "core/log.hpp"
 
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "core/error.hpp"
@@ -55,6 +59,37 @@ TEST(Log, ProgressSaysWhatHowFarHowLongStill) {
   EXPECT_EQ(duration_text(59.4), "59 s");
   EXPECT_EQ(duration_text(90), "2 min");
   EXPECT_EQ(duration_text(3600 * 3 + 20 * 60), "3 h 20 min");
+}
+
+// What a log writes of a first call for progress to a terminal so many columns wide.
+std::string on_terminal(unsigned short columns) {
+  int outer = -1, inner = -1;
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = columns;
+  if (::openpty(&outer, &inner, nullptr, nullptr, &size) != 0) return "no terminal to be had";
+  std::fflush(stdout);
+  const int before = ::dup(STDOUT_FILENO);
+  ::dup2(inner, STDOUT_FILENO);
+  {
+    Log log;
+    log.progress("meshing", "", 0, 4);
+    log.info("done");
+  }
+  std::fflush(stdout);
+  ::dup2(before, STDOUT_FILENO);
+  ::close(before);
+  ::close(inner);
+  std::string text(1024, '\0');
+  const auto length = ::read(outer, text.data(), text.size());
+  ::close(outer);
+  text.resize(length > 0 ? static_cast<size_t>(length) : 0);
+  return text;
+}
+
+TEST(Log, ProgressIsDrawnOnATerminalThatHasAWidth) {
+  EXPECT_EQ(on_terminal(80), "\r\033[Kmeshing: 0 %\r\033[Kdone\r\n");
+  EXPECT_EQ(on_terminal(0), "done\r\n");  // as mpirun gives it
 }
 
 TEST(Timer, StagesAddUpInOrder) {
