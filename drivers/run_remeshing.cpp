@@ -23,6 +23,8 @@ class AuditFailure : public core::RecoverableError {
 
 /// First step with carried stresses over the last before: what was carried has to settle.
 constexpr double first_step_share = 0.25;
+/// A first step that fails at a thirtieth of its size does so at any: another mesh is tried.
+constexpr int first_step_cuts = 5;
 
 }  // namespace
 
@@ -96,7 +98,7 @@ void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const me
   const mesh::Snapshot start = model_->snapshot();
   const auto first = [&] {
     const auto measure = times_.measure("deformation");
-    return model_->step(next_target());
+    return model_->step(next_target(), first_step_cuts);
   }();
   log_.info(remeshing_text(report));
   store(start);  // the other side of the same strain

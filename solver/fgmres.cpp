@@ -60,21 +60,45 @@ void FlexibleGmres::subtract(const std::vector<double>& coefficients, double* w)
     }
 }
 
+double* FlexibleGmres::first() {
+  if (basis_.empty()) basis_.emplace_back(size_);
+  return basis_[0].data();
+}
+
 FlexibleGmres::Report FlexibleGmres::solve(const Operator& A, const Preconditioner& M,
                                            const double* b, double* x, double tolerance,
                                            int max_iterations) {
-  Report report;
   std::fill(x, x + size_, 0.0);
-  const double start = norm(b);
+  std::copy_n(b, size_, first());
+  Report report;
+  report.start = norm(b);
+  iterate(A, M, x, tolerance * report.start, max_iterations, report);
+  return report;
+}
+
+FlexibleGmres::Report FlexibleGmres::improve(const Operator& A, const Preconditioner& M,
+                                             const double* b, double* x, double tolerance,
+                                             int max_iterations) {
+  double* r = first();
+  A(x, r);
+  for (std::size_t i = 0; i < size_; ++i) r[i] = b[i] - r[i];
+  Report report;
+  report.start = norm(r);
+  iterate(A, M, x, tolerance * norm(b), max_iterations, report);
+  return report;
+}
+
+void FlexibleGmres::iterate(const Operator& A, const Preconditioner& M, double* x, double wanted,
+                            int max_iterations, Report& report) {
+  const double start = report.start;
   report.residual = start;
-  report.converged = start == 0;
-  if (!(start > 0) || !std::isfinite(start)) return report;
+  report.converged = start <= wanted;
+  if (report.converged || !std::isfinite(start)) return;
   const auto vector_of = [&](auto& vectors, std::size_t k) {
     if (vectors.size() <= k) vectors.emplace_back(size_);
     return vectors[k].data();
   };
-  double* first = vector_of(basis_, 0);
-  for (std::size_t i = 0; i < size_; ++i) first[i] = b[i] / start;
+  for (double& r : basis_[0]) r /= start;
   // Hessenberg matrix by columns, made triangular by rotations (c, s); g: the right side.
   std::vector<std::vector<double>> H;
   std::vector<double> c, s, g{start};
@@ -120,7 +144,7 @@ FlexibleGmres::Report FlexibleGmres::solve(const Operator& A, const Precondition
     g.push_back(-s[j] * g[j]);
     g[j] *= c[j];
     report.residual = std::abs(g[j + 1]);
-    report.converged = report.residual <= tolerance * start;
+    report.converged = report.residual <= wanted;
     if (radius == 0 || length == 0) break;
   }
   for (std::size_t k = H.size(); k-- > 0;) {
@@ -132,7 +156,6 @@ FlexibleGmres::Report FlexibleGmres::solve(const Operator& A, const Precondition
     for (std::size_t k = 0; k < H.size(); ++k)
       for (std::size_t i = begin; i < std::min(size_, begin + block); ++i)
         x[i] += g[k] * static_cast<double>(directions_[k][i]);
-  return report;
 }
 
 }  // namespace polyslip::solver

@@ -23,10 +23,14 @@ class FlexibleGmres {
   using Preconditioner = std::function<void(const double* v, float* z)>;
   struct Report {
     int iterations = 0;
-    double residual = 0;  ///< norm, as the recurrence has it
+    double start = 0;     ///< |b - A x| at the guess
+    double residual = 0;  ///< the same in the end, as the recurrence has it
     bool converged = false;
   };
-  /// x from a zero guess to |b - A x| <= tolerance |b|. Collective.
+  /// x, a guess on entry, to |b - A x| <= tolerance |b|. Collective.
+  Report improve(const Operator& A, const Preconditioner& M, const double* b, double* x,
+                 double tolerance, int max_iterations);
+  /// The same from a zero guess.
   Report solve(const Operator& A, const Preconditioner& M, const double* b, double* x,
                double tolerance, int max_iterations);
 
@@ -41,6 +45,11 @@ class FlexibleGmres {
   std::vector<std::vector<double>> basis_;
   std::vector<std::vector<float>> directions_;
 
+  /// Adds to x what brings its residual, in basis 0 on entry, below `wanted`.
+  void iterate(const Operator& A, const Preconditioner& M, double* x, double wanted,
+               int max_iterations, Report& report);
+  /// The first vector of the basis.
+  double* first();
   /// out[k] = basis k . w, k < count
   std::vector<double> dots(int count, const double* w) const;
   /// w -= sum of coefficients times basis vectors

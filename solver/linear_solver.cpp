@@ -40,7 +40,10 @@ struct LinearSolver::Impl {
   void apply_preconditioner(const double* v, float* z);
   bool finite(const LinearBlocks& blocks);
   void set_right_side(Vec ru, Vec rp);
-  void judge(const LinearReport& report);
+  void set_guess(Vec du, Vec dp);
+  void judge(const FlexibleGmres::Report& report);
+  LinearReport solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance, int max_iterations,
+                     bool guessed);
 };
 
 /// z_p = -S^-1 v_p, z_u = V-cycle(v_u - B^T (1 - W C) z_p).
@@ -110,10 +113,21 @@ void LinearSolver::Impl::set_right_side(Vec ru, Vec rp) {
   fine.add_volume_forces(pressure.data(), rhs.data());
 }
 
+void LinearSolver::Impl::set_guess(Vec du, Vec dp) {
+  const PetscScalar* values = nullptr;
+  check(VecGetArrayRead(du, &values));
+  std::copy_n(values, displacements, solution.begin());
+  check(VecRestoreArrayRead(du, &values));
+  if (!layout.mixed) return;
+  check(VecGetArrayRead(dp, &values));
+  std::copy_n(values, pressures, solution.begin() + static_cast<std::ptrdiff_t>(displacements));
+  check(VecRestoreArrayRead(dp, &values));
+}
+
 /// Notes whether convergence has slowed down since the aggregates were made.
-void LinearSolver::Impl::judge(const LinearReport& report) {
+void LinearSolver::Impl::judge(const FlexibleGmres::Report& report) {
   if (report.iterations == 0) return;
-  const double rate = -std::log(report.relative_residual) / report.iterations;
+  const double rate = -std::log(report.residual / report.start) / report.iterations;
   if (!std::isfinite(rate)) return;
   if (first_rate == 0) first_rate = rate;
   if (!(rate >= settings.renewal_rate * first_rate)) slow = true;
@@ -121,35 +135,47 @@ void LinearSolver::Impl::judge(const LinearReport& report) {
 
 LinearReport LinearSolver::solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance,
                                  int max_iterations) {
-  Impl& s = *impl_;
-  if (!s.set) throw core::InternalError("LinearSolver: solve before set_blocks");
-  const Stage stage(s.layout.exchange->profile(), "linear solver");
-  s.set_right_side(ru, rp);
-  const double norm = s.gmres.norm(s.rhs.data());
+  return impl_->solve(ru, rp, du, dp, tolerance, max_iterations, false);
+}
+
+LinearReport LinearSolver::improve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance,
+                                   int max_iterations) {
+  return impl_->solve(ru, rp, du, dp, tolerance, max_iterations, true);
+}
+
+LinearReport LinearSolver::Impl::solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance,
+                                       int max_iterations, bool guessed) {
+  if (!set) throw core::InternalError("LinearSolver: solve before set_blocks");
+  const Stage stage(layout.exchange->profile(), "linear solver");
+  set_right_side(ru, rp);
+  const double norm = gmres.norm(rhs.data());
   LinearReport report;
-  if (!s.usable || !std::isfinite(norm)) {
+  report.right_side = norm;
+  if (!usable || !std::isfinite(norm)) {
     check(VecSet(du, std::nan("")));
-    if (s.layout.mixed) check(VecSet(dp, std::nan("")));
+    if (layout.mixed) check(VecSet(dp, std::nan("")));
     report.relative_residual = std::nan("");
     return report;
   }
-  const std::size_t n = s.displacements;
+  const std::size_t n = displacements;
+  const auto A = [&](const double* x, double* y) { fine.apply(x, x + n, y, y + n); };
+  const auto M = [&](const double* v, float* z) { apply_preconditioner(v, z); };
+  if (guessed) set_guess(du, dp);
   const auto result =
-      s.gmres.solve([&](const double* x, double* y) { s.fine.apply(x, x + n, y, y + n); },
-                    [&](const double* v, float* z) { s.apply_preconditioner(v, z); }, s.rhs.data(),
-                    s.solution.data(), tolerance, max_iterations);
+      guessed ? gmres.improve(A, M, rhs.data(), solution.data(), tolerance, max_iterations)
+              : gmres.solve(A, M, rhs.data(), solution.data(), tolerance, max_iterations);
   report.iterations = result.iterations;
   report.converged = result.converged;
   report.relative_residual = norm > 0 ? result.residual / norm : 0;
-  s.judge(report);
+  judge(result);
 
   PetscScalar* values = nullptr;
   check(VecGetArrayWrite(du, &values));
-  std::copy_n(s.solution.begin(), n, values);
+  std::copy_n(solution.begin(), n, values);
   check(VecRestoreArrayWrite(du, &values));
-  if (!s.layout.mixed) return report;
+  if (!layout.mixed) return report;
   check(VecGetArrayWrite(dp, &values));
-  std::copy(s.solution.begin() + static_cast<std::ptrdiff_t>(n), s.solution.end(), values);
+  std::copy(solution.begin() + static_cast<std::ptrdiff_t>(n), solution.end(), values);
   check(VecRestoreArrayWrite(dp, &values));
   return report;
 }

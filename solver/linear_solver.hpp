@@ -21,6 +21,7 @@ namespace polyslip::solver {
 struct LinearReport {
   int iterations = 0;
   bool converged = false;
+  double right_side = 0;  ///< its norm
   double relative_residual = 0;
 };
 
@@ -53,6 +54,8 @@ class LinearSolver {
   /// the displacement element. Not converged: `converged` is false, du and dp hold the last iterate
   /// (NaN if the blocks hold one).
   LinearReport solve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance, int max_iterations);
+  /// The same from du and dp as a guess.
+  LinearReport improve(Vec ru, Vec rp, Vec du, Vec dp, double tolerance, int max_iterations);
   /// Forgets whatever a restart would not have, so that a run and its restart agree bit for bit.
   /// The blocks have to be set again.
   void drop_setup();

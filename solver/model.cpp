@@ -328,7 +328,7 @@ struct Model::Impl {
     }
   }
 
-  StepRecord step(double target) {
+  StepRecord step(double target, int max_cuts) {
     const Stage stage(profile, "step");
     if (!(target > strain) || program.finished())
       throw core::InternalError(fmt::format("Model::step: {} is not beyond {}", target, strain));
@@ -358,6 +358,10 @@ struct Model::Impl {
             fmt::format("strain {:.6g}: the step fell below min_strain_increment = {:g}; last "
                         "failure: {}",
                         strain, loading.min_strain_increment, report.reason));
+      if (counters.cuts > max_cuts)
+        throw core::RecoverableError(
+            fmt::format("strain {:.6g}: no step converged, down to {:.3g}; last failure: {}",
+                        strain, increment, report.reason));
     }
   }
 
@@ -467,7 +471,9 @@ Model::~Model() = default;
 double Model::strain() const { return impl_->strain; }
 double Model::time() const { return impl_->time; }
 bool Model::finished() const { return impl_->program.finished(); }
-StepRecord Model::step(double target_strain) { return impl_->step(target_strain); }
+StepRecord Model::step(double target_strain, int max_cuts) {
+  return impl_->step(target_strain, max_cuts);
+}
 void Model::relax() { impl_->relax(); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
 std::vector<core::Vec3> Model::positions() const { return impl_->gathered(impl_->now.x); }

@@ -57,8 +57,9 @@ class Model {
   bool finished() const;
   /// One accepted step that does not pass `target_strain` nor the end of the load's stage. Throws
   /// core::InternalError if the load is finished, RecoverableError, on every rank,
-  /// when the step falls below the smallest one; the state is then that of the last accepted step.
-  StepRecord step(double target_strain);
+  /// when the step falls below the smallest one or was cut `max_cuts` times in vain; the state is
+  /// then that of the last accepted step.
+  StepRecord step(double target_strain, int max_cuts = 1000);
   /// Brings the stresses of the snapshot (carried over a remeshing) to equilibrium with the
   /// boundary held, in a time too short to flow. Throws core::RecoverableError, on every rank, if
   /// Newton's method does not converge.

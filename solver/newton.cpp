@@ -27,6 +27,15 @@ void from_petsc(Vec from, std::size_t count, std::vector<double>& to) {
   check(VecRestoreArrayRead(from, &array));
 }
 
+/// value(i) for each of `count` local entries
+template <class Value>
+void to_petsc(std::size_t count, const Value& value, Vec to) {
+  PetscScalar* array = nullptr;
+  check(VecGetArrayWrite(to, &array));
+  for (std::size_t i = 0; i < count; ++i) array[i] = value(i);
+  check(VecRestoreArrayWrite(to, &array));
+}
+
 LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t>& constrained,
                          const std::vector<double>& x) {
   LinearLayout layout;
@@ -38,6 +47,9 @@ LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t
   layout.constrained = constrained;
   return layout;
 }
+
+/// Share of the tolerance on forces below which a linear system need not be solved.
+constexpr double margin = 0.3;
 
 }  // namespace
 
@@ -67,6 +79,7 @@ NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& bound
 void NewtonSolver::drop_setup(const std::vector<double>& x) {
   linear_.reset();
   linear_ = std::make_unique<LinearSolver>(make_layout(discretisation_, constrained_, x));
+  responses_.clear();
 }
 
 NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<double>& x,
@@ -116,18 +129,21 @@ Balance NewtonSolver::measure(const std::vector<double>& x) const {
                  discretisation_.volumes(), discretisation_.volume_gap());
 }
 
-double NewtonSolver::excess(const Balance& b) const {
-  if (b.free_norm == 0) return 0;
+double NewtonSolver::allowed(const Balance& b) const {
   const double scale =
       std::max(b.reaction_norm, floor_force_) / std::sqrt(std::max(b.reaction_dofs, 1.0));
-  return b.free_norm / std::sqrt(b.free_dofs) / (options_.newton_tolerance * scale);
+  return options_.newton_tolerance * scale * std::sqrt(b.free_dofs);
+}
+
+double NewtonSolver::excess(const Balance& b) const {
+  return b.free_norm > 0 ? b.free_norm / allowed(b) : 0;
 }
 
 /// Where points' rates change by much Newton's method gains less than a well solved system would
 /// give: its square is Eisenstat and Walker's second choice (SIAM J. Sci. Comput. 17, 1996). Nor is
 /// more needed than what brings the forces below their tolerance.
 double NewtonSolver::forcing(const Balance& b, double gain) const {
-  constexpr double first = 0.03, loosest = 0.1, factor = 0.9, margin = 0.3;
+  constexpr double first = 0.03, loosest = 0.1, factor = 0.9;
   // relative to a linear_tolerance of 0.01
   const double unit = options_.linear_tolerance / 0.01;
   const double wanted = unit * (gain == 1 ? first : factor * gain * gain);
@@ -168,27 +184,40 @@ bool NewtonSolver::solve_linear(double tolerance, NewtonReport& report) {
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = -residual_[i];
   for (std::size_t e = 0; e < volumes.size(); ++e)
     volumes[e] = -discretisation_.volumes()[e] * discretisation_.volume_gap()[e];
-  return solve_system(tolerance, forces, volumes, increment_, pressure_increment_, report) &&
-         add_planar(report);
+  increment_.clear();
+  LinearReport linear;
+  if (!solve_system(tolerance, forces, volumes, increment_, pressure_increment_, linear, report))
+    return false;
+  const double left = std::max(tolerance * linear.right_side, margin * allowed(report.balance));
+  return add_planar(left, report);
 }
 
 bool NewtonSolver::solve_system(double tolerance, const std::vector<double>& forces,
                                 const std::vector<double>& volumes, std::vector<double>& u,
-                                std::vector<double>& p, NewtonReport& report) {
+                                std::vector<double>& p, LinearReport& linear,
+                                NewtonReport& report) {
   const LocalMesh& local = discretisation_.local();
   const auto dofs = 3 * static_cast<std::size_t>(local.owned_nodes);
-  PetscScalar* array = nullptr;
-  check(VecGetArrayWrite(ru_.get(), &array));
-  for (std::size_t i = 0; i < dofs; ++i) array[i] = constrained_[i] ? 0 : forces[i];
-  check(VecRestoreArrayWrite(ru_.get(), &array));
-  if (discretisation_.mixed()) {
-    check(VecGetArrayWrite(rp_.get(), &array));
-    for (std::size_t e = 0; e < local.elements.size(); ++e)
-      array[e] = discretisation_.pressure_scale(e) * volumes[e];
-    check(VecRestoreArrayWrite(rp_.get(), &array));
+  const std::size_t elements = local.elements.size();
+  const bool mixed = discretisation_.mixed();
+  const auto scale = [&](std::size_t e) { return discretisation_.pressure_scale(e); };
+  to_petsc(
+      dofs, [&](std::size_t i) { return constrained_[i] ? 0 : forces[i]; }, ru_.get());
+  if (mixed)
+    to_petsc(
+        elements, [&](std::size_t e) { return scale(e) * volumes[e]; }, rp_.get());
+  const bool guessed = !u.empty();
+  if (guessed) {
+    to_petsc(
+        dofs, [&](std::size_t i) { return constrained_[i] ? 0 : u[i]; }, du_.get());
+    if (mixed)
+      to_petsc(
+          elements, [&](std::size_t e) { return p[e] / scale(e); }, dp_.get());
   }
-  const LinearReport linear = linear_->solve(ru_.get(), rp_.get(), du_.get(), dp_.get(), tolerance,
-                                             options_.max_linear_iterations);
+  linear = guessed ? linear_->improve(ru_.get(), rp_.get(), du_.get(), dp_.get(), tolerance,
+                                      options_.max_linear_iterations)
+                   : linear_->solve(ru_.get(), rp_.get(), du_.get(), dp_.get(), tolerance,
+                                    options_.max_linear_iterations);
   report.linear_iterations += linear.iterations;
   // An increment that is only roughly right still brings Newton's method forward.
   if (!linear.converged && !(linear.relative_residual < 0.5)) {
@@ -196,49 +225,85 @@ bool NewtonSolver::solve_system(double tolerance, const std::vector<double>& for
                                 linear.iterations, linear.relative_residual);
     return false;
   }
+  u.resize(3 * static_cast<std::size_t>(local.local_nodes));
   from_petsc(du_.get(), dofs, u);
   discretisation_.exchange().update_ghosts(u, 3);
-  if (discretisation_.mixed()) {
-    from_petsc(dp_.get(), local.elements.size(), p);
-    for (std::size_t e = 0; e < local.elements.size(); ++e)
-      p[e] *= discretisation_.pressure_scale(e);
+  if (mixed) {
+    from_petsc(dp_.get(), elements, p);
+    for (std::size_t e = 0; e < elements; ++e) p[e] *= scale(e);
   }
   return true;
 }
 
-bool NewtonSolver::add_planar(NewtonReport& report) {
+std::vector<double> NewtonSolver::face_forces(const std::vector<double>& u,
+                                              const std::vector<double>& p,
+                                              std::vector<double>& forces,
+                                              std::vector<double>& volumes) const {
+  forces.resize(increment_.size());
+  volumes.resize(pressure_increment_.size());
+  discretisation_.apply_tangent(planar_.elements(), u, p, forces, volumes);
+  return planar_.sums(forces);
+}
+
+bool NewtonSolver::respond(std::size_t face, double tolerance, NewtonReport& report) {
+  Response& r = responses_[face];
+  const auto unit = planar_.direction(face);
+  std::vector<double> forces, volumes;
+  face_forces(unit, std::vector<double>(pressure_increment_.size(), 0), forces, volumes);
+  for (double& f : forces) f = -f;
+  for (double& v : volumes) v = -v;
+  if (r.u.empty()) r.p.resize(volumes.size());
+  LinearReport linear;
+  if (!solve_system(tolerance, forces, volumes, r.u, r.p, linear, report)) return false;
+  for (std::size_t dof = 0; dof < unit.size(); ++dof)
+    if (constrained_[dof]) r.u[dof] = unit[dof];
+  r.asked = linear.right_side;
+  r.left = linear.relative_residual * linear.right_side;
+  return true;
+}
+
+std::vector<double> NewtonSolver::face_motions() const {
   const std::size_t n = planar_.count();
-  if (n == 0) return true;
-  const auto& elements = planar_.elements();
-  std::vector<double> forces(increment_.size()), volumes(pressure_increment_.size());
-  const auto face_forces = [&](const std::vector<double>& u, const std::vector<double>& p) {
-    discretisation_.apply_tangent(elements, u, p, forces, volumes);
-    return planar_.sums(forces);
-  };
-  for (std::size_t dof = 0; dof < constrained_.size(); ++dof)
-    if (constrained_[dof]) increment_[dof] = 0;
-  auto right = face_forces(increment_, pressure_increment_);
+  std::vector<double> forces, volumes;
+  auto right = face_forces(increment_, pressure_increment_, forces, volumes);
   for (std::size_t k = 0; k < n; ++k) right[k] = -planar_residual_[k] - right[k];
-  // Each face's unit motion with the body's response to it.
   std::vector<std::vector<double>> stiffness(n, std::vector<double>(n));
-  std::vector<std::vector<double>> u(n, increment_), p(n, pressure_increment_);
   for (std::size_t k = 0; k < n; ++k) {
-    const auto unit = planar_.direction(k);
-    face_forces(unit, std::vector<double>(volumes.size(), 0));
-    for (double& f : forces) f = -f;
-    for (double& v : volumes) v = -v;
-    if (!solve_system(options_.linear_tolerance, forces, volumes, u[k], p[k], report)) return false;
-    for (std::size_t dof = 0; dof < unit.size(); ++dof)
-      if (constrained_[dof]) u[k][dof] = unit[dof];
-    const auto column = face_forces(u[k], p[k]);
+    const auto column = face_forces(responses_[k].u, responses_[k].p, forces, volumes);
     for (std::size_t row = 0; row < n; ++row) stiffness[row][k] = column[row];
   }
-  planar_increment_ = solve_dense(stiffness, right);
+  return solve_dense(stiffness, right);
+}
+
+/// A face moves the whole body: what is left of the response to a unit motion counts with the
+/// motion, which beside a small imbalance can be large (from zero stress in a long body).
+bool NewtonSolver::add_planar(double left, NewtonReport& report) {
+  const std::size_t n = planar_.count();
+  if (n == 0) return true;
+  constexpr int max_rounds = 4;
+  constexpr double aim = 0.5, tightest = 1e-8;
+  for (std::size_t dof = 0; dof < constrained_.size(); ++dof)
+    if (constrained_[dof]) increment_[dof] = 0;
+  responses_.resize(n);
+  std::vector<double> tolerances(n, options_.linear_tolerance);
+  bool fine = false;
+  for (int round = 0; round < max_rounds && !fine; ++round) {
+    for (std::size_t k = 0; k < n; ++k)
+      if (!respond(k, tolerances[k], report)) return false;
+    planar_increment_ = face_motions();
+    fine = true;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double share = left / std::abs(planar_increment_[k]);
+      fine = fine && responses_[k].left <= share;
+      tolerances[k] = std::clamp(aim * share / responses_[k].asked, tightest, tolerances[k]);
+    }
+  }
   for (std::size_t k = 0; k < n; ++k) {
+    const Response& r = responses_[k];
     for (std::size_t i = 0; i < increment_.size(); ++i)
-      increment_[i] += planar_increment_[k] * u[k][i];
-    for (std::size_t e = 0; e < p[k].size(); ++e)
-      pressure_increment_[e] += planar_increment_[k] * p[k][e];
+      increment_[i] += planar_increment_[k] * r.u[i];
+    for (std::size_t e = 0; e < r.p.size(); ++e)
+      pressure_increment_[e] += planar_increment_[k] * r.p[e];
   }
   return true;
 }

@@ -63,6 +63,13 @@ class NewtonSolver {
   const PlanarFaces& planar() const { return planar_; }
 
  private:
+  /// Of the body to a unit motion of a planar face, as the linearised equations have it.
+  struct Response {
+    std::vector<double> u, p;  // [local_nodes][3] the face's motion included, [elements]
+    double asked = 0,
+           left = 0;  // norms of what the motion alone throws out of balance, of the rest
+  };
+
   Discretisation& discretisation_;
   const Boundary& boundary_;
   SolverOptions options_;
@@ -73,6 +80,7 @@ class NewtonSolver {
   std::vector<double> residual_;  // [local_nodes][3] internal - external
   std::vector<double> increment_, pressure_increment_;
   std::vector<double> planar_residual_, planar_increment_;  // of each planar face
+  std::vector<Response> responses_;                         // to each planar face; empty: none yet
   double length_ = 0, floor_force_ = 0;
   double moved_ = 0;  // |last increment| / |displacement in the step|; 0 before the first
 
@@ -81,18 +89,29 @@ class NewtonSolver {
   /// The criteria on forces alone.
   bool balanced(const Balance& balance) const;
   bool converged(const Balance& balance, const NewtonProblem& problem) const;
-  /// rms of the free forces relative to what it may be.
+  /// What the norm of the free forces may be.
+  double allowed(const Balance& balance) const;
+  /// The norm of the free forces relative to that.
   double excess(const Balance& balance) const;
   /// Tolerance of the next linear solve, `gain` being what the last iteration made of the forces
   /// (1 before the first).
   double forcing(const Balance& balance, double gain) const;
   bool solve_linear(double tolerance, NewtonReport& report);
-  /// Solves for increments with these right sides: forces on free dofs, volumes of elements.
+  /// Solves for increments with these right sides: forces on free dofs, volumes of elements; from
+  /// u and p as a guess unless they are empty.
   bool solve_system(double tolerance, const std::vector<double>& forces,
                     const std::vector<double>& volumes, std::vector<double>& u,
-                    std::vector<double>& p, NewtonReport& report);
-  /// Adds to the increment what the planar faces' own unknowns do.
-  bool add_planar(NewtonReport& report);
+                    std::vector<double>& p, LinearReport& linear, NewtonReport& report);
+  /// Adds to the increment what the planar faces' own unknowns do; they leave no more than `left`
+  /// out of balance (norm of the linear solver).
+  bool add_planar(double left, NewtonReport& report);
+  /// Brings a response up to date with the present tangent: its rest within tolerance * asked.
+  bool respond(std::size_t face, double tolerance, NewtonReport& report);
+  /// Force on each planar face (and elements' volumes) by the tangent's action.
+  std::vector<double> face_forces(const std::vector<double>& u, const std::vector<double>& p,
+                                  std::vector<double>& forces, std::vector<double>& volumes) const;
+  /// Motions of the faces that, with the body's responses, balance the forces on them.
+  std::vector<double> face_motions() const;
   double conjugate_residual() const;
   /// |x - x0| / |x - old| over this body. Collective.
   double relative_move(const std::vector<double>& x, const std::vector<double>& x0,

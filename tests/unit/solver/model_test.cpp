@@ -132,6 +132,9 @@ TEST(Model, FailureEverywhereIsRecoverableAndLeavesTheState) {
   Model model(MPI_COMM_WORLD, box(law), law, loading, SolverOptions{}, {});
   EXPECT_THROW(model.step(1e-3), core::RecoverableError);
   EXPECT_EQ(model.strain(), 0);
+  loading.min_strain_increment = 1e-9;
+  Model patient(MPI_COMM_WORLD, box(law), law, loading, SolverOptions{}, {});
+  EXPECT_THROW(patient.step(1e-3, 3), core::RecoverableError);
   const auto s = model.snapshot();
   for (const auto& f : s.fields)
     if (f.name == "displacement") {
