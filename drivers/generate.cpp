@@ -60,12 +60,13 @@ class Progress {
   }
 
  private:
-  static constexpr std::array<std::pair<std::string_view, double>, 8> shares{
+  static constexpr std::array<std::pair<std::string_view, double>, 9> shares{
       {{"tessellating", 3},
        {"regularising", 9},
        {"meshing faces", 4},
        {"meshing grains", 60},
        {"sliding nodes", 14},
+       {"meshing poor grains", 1},
        {"assembling", 4},
        {"checking", 3},
        {"writing", 3}}};

@@ -7,9 +7,16 @@ namespace polyslip::mesh {
 namespace {
 
 constexpr double highest_floor = 0.2;
+constexpr double sliver = 0.1;
 /// Share of the worst triangle's radius ratio (2 r/R) that elements on it reach.
 constexpr double triangle_share = 0.7;
 constexpr double alpha = 0.2;  // eq. (5)
+
+/// A radius ratio in steps, as far as it is below `most`.
+int steps(double worst, double most) {
+  constexpr double step = 0.02;
+  return static_cast<int>(std::floor(std::min(worst, most) / step));
+}
 
 }  // namespace
 
@@ -26,6 +33,14 @@ SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size) {
   }
   const double mean = sizes / static_cast<double>(surface.triangles.size());
   return {std::min(highest_floor, triangle_share * least), std::pow(mean, 3 * alpha)};
+}
+
+std::pair<int, double> rank_of(double worst, double O) { return {steps(worst, highest_floor), O}; }
+
+bool replaces(const MeshQuality& candidate, const MeshQuality& present) {
+  const int before = steps(present.worst, sliver), after = steps(candidate.worst, sliver);
+  if (before != after) return after > before;
+  return candidate.O > present.O && candidate.worst >= present.worst;
 }
 
 bool is_good(const SurfaceBounds& bounds, double worst, double O, double target) {

@@ -1,6 +1,8 @@
 #pragma once
 // When a grain's mesh is good enough for no further mesher to be tried.
 
+#include <utility>
+
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh {
@@ -16,5 +18,17 @@ SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size);
 /// Whether a mesh whose worst radius ratio is `worst` reaches the floor, and its O `target` times
 /// the bound's. Nothing reaches a target of 1.
 bool is_good(const SurfaceBounds& bounds, double worst, double O, double target);
+
+/// The larger is the better mesh: first by the worst radius ratio as far as it is below 0.2 (in
+/// steps of 0.02), then by O. O alone would take larger elements for a sliver.
+std::pair<int, double> rank_of(double worst, double O);
+
+/// A mesh's worst radius ratio and O.
+struct MeshQuality {
+  double worst = 0, O = 0;
+};
+/// Whether a mesh is to take the place of the present one, whose nodes have slid already: if it has
+/// a better O and no worse an element, or if it mends one below 0.1 (in steps as above).
+bool replaces(const MeshQuality& candidate, const MeshQuality& present);
 
 }  // namespace polyslip::mesh

@@ -79,7 +79,8 @@ struct MeshingReport {
                            ///< "sliding", "assembly"
 };
 
-/// How far a stage ("meshing faces", "meshing grains", "sliding nodes", "assembling") is, 0 ... 1.
+/// How far a stage ("meshing faces", "meshing grains", "sliding nodes", "meshing poor grains",
+/// "assembling") is, 0 ... 1.
 using MeshingProgress = std::function<void(const std::string& stage, double fraction)>;
 
 /// What had to be given up of the surfaces, in one line: mid nodes pulled in, nodes put on a

@@ -9,7 +9,6 @@
 #include <list>
 #include <memory>
 #include <thread>
-#include <tuple>
 
 #include "core/error.hpp"
 #include "mesh/candidate.hpp"
@@ -29,29 +28,23 @@ constexpr std::size_t batch_size = 25;
 /// the others, and what is known of grains stays little.
 constexpr std::size_t most_batches = 400;
 
-constexpr double radius_ratio_floor = 0.2;
-constexpr double radius_ratio_step = 0.02;
-
 /// A grain's candidates: the best so far and the faults, by mesher.
 struct Candidates {
   bool any = false;
   std::size_t mesher = 0;
-  int worst = 0;  // worst radius ratio up to the floor, in steps
-  double least = 0;
+  double least = 0;  // worst radius ratio
   double O = 0;
   VolumeMesh mesh;
   std::vector<std::string> faults;  // [meshers], empty: none
 
   /// Whichever order candidates come in, the same one wins.
   void offer(std::size_t from, VolumeMesh&& candidate, double element_size) {
-    const double ratio = std::min(min_radius_ratio(candidate), radius_ratio_floor);
-    const int steps = static_cast<int>(std::floor(ratio / radius_ratio_step));
+    const double ratio = min_radius_ratio(candidate);
     const double quality = mesh_quality_O(candidate, element_size);
-    const auto rank = [](int w, double o, std::size_t m) { return std::tuple(-w, -o, m); };
-    if (any && rank(worst, O, mesher) <= rank(steps, quality, from)) return;
+    const auto now = rank_of(least, O), then = rank_of(ratio, quality);
+    if (any && (now > then || (now == then && mesher <= from))) return;
     any = true;
     mesher = from;
-    worst = steps;
     least = ratio;
     O = quality;
     mesh = std::move(candidate);

@@ -10,6 +10,7 @@
 #include "mesh/assembly.hpp"
 #include "mesh/boundary_mesh.hpp"
 #include "mesh/boundary_sliding.hpp"
+#include "mesh/candidate.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/volume_correction.hpp"
@@ -39,11 +40,13 @@ void check_domain(const Mesh& mesh, int threads) {
 class Pipeline {
  public:
   Pipeline(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
-           const GrainMeshers& meshers, MeshingReport& report, const MeshingProgress& progress)
+           const GrainMeshers& meshers, MeshingReport& report, const MeshingProgress& progress,
+           const TurnsOfMeshers& turns)
       : geometry_(geometry),
         options_(options),
         scale_(scale),
         meshers_(meshers),
+        turns_(turns),
         report_(report),
         progress_(progress),
         threads_(core::thread_count(options.jobs)),
@@ -52,18 +55,11 @@ class Pipeline {
 
   Mesh run() {
     mesh_until_all_are();
-    std::vector<VolumeMesh> volumes;
-    volumes.reserve(results_.size());
-    for (auto& r : results_) volumes.push_back(std::move(r.mesh));
-    if (options_.slide_boundary) {
-      tell("sliding nodes", 0);
-      const auto measure = report_.times.measure("sliding");
-      slide_boundary(boundary_, volumes, options_.progression_factor, threads_);
-    }
+    if (options_.slide_boundary) slide();
+    if (options_.slide_boundary && turns_.first) mesh_poor_grains();
     tell("assembling", 0);
     const auto measure = report_.times.measure("assembly");
-    Mesh mesh =
-        assemble(geometry_, boundary_, std::move(volumes), scale_, options_.order, threads_);
+    Mesh mesh = assemble(geometry_, boundary_, take_volumes(), scale_, options_.order, threads_);
     check_progression();
     tell("assembling", 0.5);
     report_.straightened = mend_curved_elements(mesh, threads_);
@@ -101,6 +97,66 @@ class Pipeline {
                          grain, scale_);
   }
 
+  std::vector<VolumeMesh> take_volumes() {
+    std::vector<VolumeMesh> volumes;
+    volumes.reserve(results_.size());
+    for (auto& r : results_) volumes.push_back(std::move(r.mesh));
+    return volumes;
+  }
+
+  void slide() {
+    tell("sliding nodes", 0);
+    const auto measure = report_.times.measure("sliding");
+    auto volumes = take_volumes();
+    slide_boundary(boundary_, volumes, options_.progression_factor, threads_);
+    core::parallel_for(threads_, results_.size(), [&](std::size_t i) {
+      results_[i].mesh = std::move(volumes[i]);
+      results_[i].O = mesh_quality_O(results_[i].mesh, boundary_.grain_size(static_cast<int>(i)));
+    });
+  }
+
+  /// All meshers try grains whose mesh is not good enough where nodes are now; that stays
+  /// unless another may replace it (mesh/candidate.hpp).
+  void mesh_poor_grains() {
+    tell("meshing poor grains", 0);
+    const auto measure = report_.times.measure("meshing");
+    const auto numbers = boundary_.numbers();
+    const auto positions = boundary_.positions(numbers);
+    std::vector<char> good(results_.size(), false);
+    core::parallel_for(threads_, results_.size(), [&](std::size_t i) {
+      const auto grain = request(static_cast<int>(i), numbers, positions);
+      good[i] = is_good(surface_bounds(grain.surface, grain.element_size),
+                        min_radius_ratio(results_[i].mesh), results_[i].O, options_.mesher_target);
+    });
+    std::vector<int> grains;
+    for (int i = 0; i < static_cast<int>(good.size()); ++i)
+      if (!good[i]) grains.push_back(i);
+    const auto source = [&](std::size_t i) { return request(grains[i], numbers, positions); };
+    std::size_t got = 0;
+    meshers_(grains.size(), source, [&](std::size_t i, GrainResult&& result) {
+      tell("meshing poor grains", static_cast<double>(++got) / static_cast<double>(grains.size()));
+      GrainResult& now = results_[grains[i]];
+      add_faults(result);
+      if (result.ok &&
+          replaces({min_radius_ratio(result.mesh), result.O}, {min_radius_ratio(now.mesh), now.O}))
+        now = std::move(result);
+    });
+  }
+
+  /// A mesher that tries a grain again may fail again.
+  void add_faults(const GrainResult& result) {
+    auto& all = report_.faults;
+    for (const auto& fault : result.faults)
+      if (std::find(all.begin(), all.end(), fault) == all.end()) all.push_back(fault);
+  }
+
+  GrainRequest request(int grain, const BoundaryNumbers& numbers,
+                       const std::vector<Vec3>& positions) const {
+    return {grain,
+            grain_surface(geometry_.topology, boundary_, numbers, positions, grain, scale_).mesh,
+            boundary_.grain_size(grain)};
+  }
+
   void mesh_grains(const std::vector<int>& changed_faces) {
     const auto& topology = geometry_.topology;
     std::vector<char> stale(topology.cell_count(), false);
@@ -112,24 +168,26 @@ class Pipeline {
     std::vector<int> grains;
     for (int grain = 0; grain < topology.cell_count(); ++grain)
       if (stale[grain]) grains.push_back(grain);
+    mesh_grains(grains, turns_.first ? turns_.first : meshers_, numbers, positions);
+    std::erase_if(grains, [&](int grain) { return results_[grain].ok; });
+    if (turns_.others) mesh_grains(grains, turns_.others, numbers, positions);
+  }
+
+  void mesh_grains(const std::vector<int>& grains, const GrainMeshers& meshers,
+                   const BoundaryNumbers& numbers, const std::vector<Vec3>& positions) {
     std::size_t got = 0;
-    const auto request = [&](std::size_t i) -> GrainRequest {
-      const int grain = grains[i];
-      return {grain, grain_surface(topology, boundary_, numbers, positions, grain, scale_).mesh,
-              boundary_.grain_size(grain)};
-    };
+    const auto source = [&](std::size_t i) { return request(grains[i], numbers, positions); };
     const auto take = [&](std::size_t i, GrainResult&& result) {
       result.mesh.nodes.shrink_to_fit();
       result.mesh.tetrahedra.shrink_to_fit();
       results_[grains[i]] = std::move(result);
       tell("meshing grains", static_cast<double>(++got) / static_cast<double>(grains.size()));
     };
-    meshers_(grains.size(), request, take);
+    meshers(grains.size(), source, take);
     if (got != grains.size())
       throw core::InternalError(
           fmt::format("meshing: {} grains asked for, {} got", grains.size(), got));
-    for (int grain : grains)
-      for (const auto& fault : results_[grain].faults) report_.faults.push_back(fault);
+    for (int grain : grains) add_faults(results_[grain]);
   }
 
   /// New and old surfaces share nodes, not all points between them: what volume that costs is given
@@ -222,6 +280,7 @@ class Pipeline {
   const MeshingOptions& options_;
   Vec3 scale_;
   const GrainMeshers& meshers_;
+  const TurnsOfMeshers& turns_;
   MeshingReport& report_;
   const MeshingProgress& progress_;
   int threads_;
@@ -242,9 +301,9 @@ std::string repairs_text(const MeshingReport& report) {
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,
-                   const MeshingProgress& progress) {
+                   const MeshingProgress& progress, const TurnsOfMeshers& turns) {
   report = {};
-  return Pipeline(geometry, options, scale, meshers, report, progress).run();
+  return Pipeline(geometry, options, scale, meshers, report, progress, turns).run();
 }
 
 }  // namespace polyslip::mesh

@@ -11,9 +11,17 @@ namespace polyslip::mesh {
 using GrainMeshers =
     std::function<void(std::size_t count, const RequestSource&, const ResultSink&)>;
 
-/// As mesh_geometry (mesh/geometry.hpp), by `meshers`.
+/// Meshers for grains whose meshes are judged when nodes have slid only; none: judged before.
+struct TurnsOfMeshers {
+  GrainMeshers first;   ///< for all grains
+  GrainMeshers others;  ///< for grains without a mesh by the first
+};
+
+/// As mesh_geometry (mesh/geometry.hpp), by `meshers`; with `turns`, these make the grains' first
+/// meshes, and grains that are not good enough once nodes have slid (mesh/candidate.hpp) are left
+/// to `meshers`.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,
-                   const MeshingProgress& progress = {});
+                   const MeshingProgress& progress = {}, const TurnsOfMeshers& turns = {});
 
 }  // namespace polyslip::mesh

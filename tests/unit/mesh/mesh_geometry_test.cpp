@@ -309,6 +309,37 @@ TEST(MeshGeometry, CopiesEveryFaceOfAGrainThatFailsOtherwise) {
   EXPECT_NEAR(sum(grain_volumes(mesh)), 8, 1e-11);
 }
 
+TEST(MeshGeometry, LeavesGrainsWithoutAFirstMeshToAllMeshers) {
+  const auto first = [](const std::vector<GrainRequest>& requests) {
+    auto results = star_meshes(requests);
+    for (auto& r : results)
+      if (r.grain == 2)
+        r = {.grain = 2, .ok = false, .mesh = {}, .mesher = "", .O = 0, .faults = {"no"}};
+    return results;
+  };
+  std::vector<std::vector<int>> asked;
+  const auto others = [&](const std::vector<GrainRequest>& requests) {
+    auto results = star_meshes(requests);
+    asked.emplace_back();
+    for (auto& r : results) {
+      asked.back().push_back(r.grain);
+      r.mesher = "second";
+      r.O = 0;  // never better than what there is
+    }
+    return results;
+  };
+  auto options = options_of(0.34);
+  options.meshers = {"star", "second"};
+  options.slide_boundary = true;
+  MeshingReport report;
+  const Mesh mesh = mesh_geometry(cubes(2), options, Vec3::Ones(), test::at_once(others), report,
+                                  {}, {test::at_once(first), test::at_once(others)});
+  ASSERT_NO_THROW(check(mesh));
+  EXPECT_EQ(report.wins, (std::vector<int>{7, 1}));
+  ASSERT_EQ(asked.size(), 2u);
+  EXPECT_EQ(asked[0], std::vector<int>{2});
+}
+
 TEST(MeshGeometry, NamesTheGrainThatCannotBeMeshed) {
   const auto failing = [](const std::vector<GrainRequest>& requests) {
     auto results = star_meshes(requests);

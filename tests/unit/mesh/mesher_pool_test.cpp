@@ -239,6 +239,22 @@ TEST(Candidates, AreGoodIfTheyReachWhatTheirSurfaceAllows) {
   EXPECT_GT(surface_bounds(needle, 0.5).floor, 0.01);
 }
 
+TEST(Candidates, ReplaceAPresentMeshForABetterOOrASliver) {
+  const MeshQuality present{0.17, 0.93};
+  EXPECT_TRUE(replaces({0.17, 0.94}, present));
+  EXPECT_FALSE(replaces({0.3, 0.99}, {0.4, 0.93}));
+  EXPECT_TRUE(replaces({0.6, 0.94}, present));
+  EXPECT_FALSE(replaces(present, present));
+  EXPECT_FALSE(replaces({0.3, 0.92}, present))
+      << "O must not fall for an element that is no sliver";
+  EXPECT_FALSE(replaces({0.12, 0.94}, present)) << "nor the worst element";
+  const MeshQuality sliver{0.05, 0.93};
+  EXPECT_TRUE(replaces({0.15, 0.85}, sliver));
+  EXPECT_TRUE(replaces({0.07, 0.85}, sliver));
+  EXPECT_FALSE(replaces({0.03, 0.99}, sliver));
+  EXPECT_FALSE(replaces({0.03, 0.99}, present));
+}
+
 struct Fault {
   std::string kind, text;
 };
