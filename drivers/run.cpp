@@ -159,12 +159,14 @@ void RunJob::write_profile() {
 
 void RunJob::finish(bool completed) {
   if (!model_) return;
-  const mesh::Snapshot last = model_->snapshot();
   write_profile();
   const auto cpu_s = sum_over_ranks(comm_, progress_.cpu_s, times_);
   const double memory = sum_over_ranks(comm_, core::peak_rss_mb());
+  results::Summary summary;
+  model_->show([&](const mesh::Snapshot& last, const mesh::FieldReader&) {
+    summary = summarise(progress_, options_, last);
+  });
   on_root(comm_, [&] {
-    results::Summary summary = summarise(progress_, options_, last);
     summary.completed = completed;
     summary.cpu_s = {cpu_s.begin(), cpu_s.end()};
     summary.wall_s = progress_.wall_s + core::wall_seconds() - wall_start_;
@@ -180,8 +182,7 @@ void RunJob::stop(const std::string& reason) {
   log_.error(reason);
   if (model_) {
     progress_.last_attempt = -1;  // a restart may try again to remesh here
-    mesh::Snapshot snapshot = model_->snapshot();
-    write_checkpoint(snapshot);
+    write_checkpoint();
     finish(false);
   }
   log_.error(fmt::format("{}: stopped; the last checkpoint is whole (polyslip run --restart {})",
@@ -193,7 +194,7 @@ void RunJob::start() {
   build_model(begin());
   if (model_->strain() == 0 && progress_.states == 0) {
     measure_new_mesh();
-    store(model_->snapshot());
+    store();
   }
   strain_start_ = model_->strain();
   if (progress_.due) {

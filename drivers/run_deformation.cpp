@@ -12,6 +12,16 @@
 
 namespace polyslip::drivers {
 
+void RunJob::store() {
+  model_->show([&](const mesh::Snapshot& outline, const mesh::FieldReader& read) {
+    const auto measure = times_.measure("output");
+    states_->store(outline, read);
+    ++progress_.states;
+    progress_.last_stored = outline.strain;
+  });
+  MPI_Bcast(&progress_.last_stored, 1, MPI_DOUBLE, 0, comm_);
+}
+
 void RunJob::store(const mesh::Snapshot& snapshot) {
   on_root(comm_, [&] {
     const auto measure = times_.measure("output");
@@ -26,21 +36,21 @@ bool RunJob::stored_here() const {
   return std::abs(progress_.last_stored - model_->strain()) <= same_strain;
 }
 
-void RunJob::write_checkpoint(mesh::Snapshot& snapshot) {
+void RunJob::write_checkpoint() {
   model_->drop_setup();
-  on_root(comm_, [&] {
+  model_->show([&](mesh::Snapshot& outline, const mesh::FieldReader& read) {
     const auto measure = times_.measure("output");
     macro_->sync();
     ++progress_.checkpoints;
     RunProgress stored = progress_;
     stored.cpu_s = total_times(progress_.cpu_s, times_);
     stored.wall_s += core::wall_seconds() - wall_start_;
-    snapshot.provenance[results::deck_hash_key] = fingerprint_;
-    snapshot.provenance[deck_text_key] = deck_text_;
-    snapshot.provenance["version"] = core::version();
-    snapshot.provenance["seed"] = std::to_string(options_.polycrystal.seed);
-    snapshot.provenance[progress_key] = stored.text();
-    results::write_checkpoint(request_.folder, progress_.checkpoints, snapshot);
+    outline.provenance[results::deck_hash_key] = fingerprint_;
+    outline.provenance[deck_text_key] = deck_text_;
+    outline.provenance["version"] = core::version();
+    outline.provenance["seed"] = std::to_string(options_.polycrystal.seed);
+    outline.provenance[progress_key] = stored.text();
+    results::write_checkpoint(request_.folder, progress_.checkpoints, outline, read);
   });
 }
 
@@ -78,10 +88,9 @@ void RunJob::advance() {
     const bool tried_here = model_->strain() <= progress_.last_attempt + same_strain;
     if (!options_.remeshing.automatic || tried_here) throw;
     progress_.due = {failed_step, error.what()};
-    mesh::Snapshot snapshot = model_->snapshot();
-    if (!stored_here()) store(snapshot);
-    write_checkpoint(snapshot);
-    remesh(snapshot);
+    if (!stored_here()) store();
+    write_checkpoint();
+    remesh(model_->snapshot());
   }
 }
 
@@ -117,11 +126,10 @@ void RunJob::arrive() {
     progress_.due = due_here(event);
     const bool due = static_cast<bool>(progress_.due);
     if (!event.store && !event.checkpoint && !due) return;
-    mesh::Snapshot snapshot = model_->snapshot();
-    if (event.store || due) store(snapshot);
-    if (event.checkpoint || due) write_checkpoint(snapshot);
+    if (event.store || due) store();
+    if (event.checkpoint || due) write_checkpoint();
     // A remeshing ends with a step, and so at another strain.
-    if (!due || !remesh(snapshot)) return;
+    if (!due || !remesh(model_->snapshot())) return;
   }
 }
 

@@ -62,9 +62,11 @@ class RunJob {
   Event event_here() const;
   bool asked_for_soon() const;
   DueRemeshing due_here(const Event& event);
+  /// The body as it is.
+  void store();
   void store(const mesh::Snapshot& snapshot);
   bool stored_here() const;
-  void write_checkpoint(mesh::Snapshot& snapshot);
+  void write_checkpoint();
 
   // run_remeshing.cpp
   /// Begins to follow the wear of the mesh that the snapshot, on rank 0, has.

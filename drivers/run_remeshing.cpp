@@ -118,8 +118,7 @@ void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const me
   progress_.just_remeshed = true;
   progress_.watch_from = progress_.last_attempt + options_.remeshing.min_interval;
   record(first);
-  mesh::Snapshot snapshot = model_->snapshot();
-  write_checkpoint(snapshot);
+  write_checkpoint();
 }
 
 /// On rank 0. An invalid mesh is a failed attempt like another.

@@ -1,7 +1,10 @@
 #pragma once
 // What one stage hands to the next: a mesh, its fields, time, strain, provenance. Held by rank 0.
+// A snapshot whose fields have no values is an outline; a FieldReader gives them piece by piece.
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -63,5 +66,25 @@ struct Snapshot {
     return nullptr;
   }
 };
+
+/// Reads a field of an outline: its values at the nodes or elements first ... last - 1 (of a field
+/// at quadrature points: at the elements' points), [last - first][points][components].
+using FieldReader =
+    std::function<std::vector<double>(const Field& field, std::size_t first, std::size_t last)>;
+
+/// Nodes or elements that a field's values belong to.
+inline std::size_t owner_count(const Snapshot& snapshot, const Field& field) {
+  return field.location == Location::node ? snapshot.mesh.nodes.size()
+                                          : snapshot.mesh.tetrahedra.size();
+}
+/// Values of a field at each of them.
+inline std::size_t values_each(const Snapshot& snapshot, const Field& field) {
+  const int points = field.location == Location::quadrature_point ? snapshot.quadrature_points : 1;
+  return static_cast<std::size_t>(points) * static_cast<std::size_t>(field.components);
+}
+
+/// Reads the values that the snapshot itself holds; it has to outlive the reader, which throws
+/// core::InternalError for a field of the wrong size.
+FieldReader reader_of(const Snapshot& snapshot);
 
 }  // namespace polyslip::mesh

@@ -49,9 +49,14 @@ void remove_parts(const std::string& run_folder) {
 }  // namespace
 
 void write_checkpoint(const std::string& run_folder, int number, const mesh::Snapshot& snapshot) {
+  write_checkpoint(run_folder, number, snapshot, mesh::reader_of(snapshot));
+}
+
+void write_checkpoint(const std::string& run_folder, int number, const mesh::Snapshot& outline,
+                      const mesh::FieldReader& read) {
   const std::string folder = in_folder(run_folder, checkpoints_folder);
   core::make_folder(folder);
-  write_state(in_folder(folder, checkpoint_name(number)), snapshot);
+  write_state(in_folder(folder, checkpoint_name(number)), outline, read);
   remove_parts(run_folder);
   auto all = checkpoints_in(run_folder);
   // Later ones are of a run that was taken up before them: what follows no longer belongs to them.

@@ -13,7 +13,11 @@ namespace polyslip::results {
 inline const std::string deck_hash_key = "deck_hash";
 
 /// Writes checkpoints/checkpoint-<number>.h5 and, once it is there, removes all but this one and
-/// the one before, and interrupted writes. InputError if it cannot be written.
+/// the one before, and interrupted writes. InputError if it cannot be written. The fields of the
+/// outline are read piece by piece.
+void write_checkpoint(const std::string& run_folder, int number, const mesh::Snapshot& outline,
+                      const mesh::FieldReader& read);
+/// The same of a snapshot that has its fields.
 void write_checkpoint(const std::string& run_folder, int number, const mesh::Snapshot& snapshot);
 
 struct CheckpointFile {

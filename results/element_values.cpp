@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "core/error.hpp"
@@ -70,55 +71,63 @@ std::vector<double> point_weights(const std::array<Vec3, 10>& x, int points, Ele
   return w;
 }
 
-/// A field of the snapshot whose size has been checked; null if there is none.
-const mesh::Field* field_of(const mesh::Snapshot& s, const char* name, Location location,
-                            int components = 0) {
+/// The values of some elements, [elements][points][components].
+struct Piece {
+  int components = 0;
+  std::size_t each = 0;  // values of an element
+  std::vector<double> values;
+  /// Values of an element, counted from the first one of the piece.
+  const double* of(std::size_t element) const { return &values[element * each]; }
+};
+
+/// Elements first ... last - 1 of a field whose size is checked; none if there is no such field.
+std::optional<Piece> piece_of(const mesh::Snapshot& s, const mesh::FieldReader& read,
+                              const char* name, Location location, std::size_t first,
+                              std::size_t last, int components = 0) {
   const auto* field = s.find(name, location);
-  if (field == nullptr) return nullptr;
-  const std::size_t entities = static_cast<std::size_t>(s.mesh.element_count()) *
-                               (location == Location::quadrature_point ? s.quadrature_points : 1);
-  if ((components > 0 && field->components != components) ||
-      field->values.size() != entities * field->components)
+  if (field == nullptr) return std::nullopt;
+  Piece piece{field->components, mesh::values_each(s, *field), {}};
+  if (components == 0 || field->components == components) piece.values = read(*field, first, last);
+  if (piece.values.size() != (last - first) * piece.each)
     throw core::InternalError(
-        fmt::format("results/element_values: field {} has {} components and {} values for {} rows",
-                    name, field->components, field->values.size(), entities));
-  return field;
+        fmt::format("results/element_values: field {} has {} components and {} values for {} "
+                    "elements",
+                    name, field->components, piece.values.size(), last - first));
+  return piece;
 }
 
 /// Weighted values of one element, component by component.
 template <int N>
-Eigen::Matrix<double, N, 1> mean(const mesh::Field& field, int element,
+Eigen::Matrix<double, N, 1> mean(const Piece& field, std::size_t element,
                                  std::span<const double> weights) {
   Eigen::Matrix<double, N, 1> sum = Eigen::Matrix<double, N, 1>::Zero(field.components);
-  for (std::size_t p = 0; p < weights.size(); ++p) {
-    const double* v = &field.values[(element * weights.size() + p) * field.components];
-    for (int c = 0; c < field.components; ++c) sum[c] += weights[p] * v[c];
-  }
+  const double* v = field.of(element);
+  for (std::size_t p = 0; p < weights.size(); ++p)
+    for (int c = 0; c < field.components; ++c) sum[c] += weights[p] * *v++;
   return sum;
 }
 
-core::Quaternion mean_quaternion(const mesh::Field& field, int element,
+core::Quaternion mean_quaternion(const Piece& field, std::size_t element,
                                  std::span<const double> weights) {
   std::vector<core::Quaternion> q;
   for (std::size_t p = 0; p < weights.size(); ++p) {
-    const double* v = &field.values[(element * weights.size() + p) * 4];
+    const double* v = field.of(element) + 4 * p;
     q.emplace_back(v[0], v[1], v[2], v[3]);
   }
   return core::mean_rotation(q, weights);
 }
 
 /// The value at the centroid, made a unit quaternion again; signs as the first point's.
-core::Quaternion centroid_quaternion(const mesh::Field& field, int element,
+core::Quaternion centroid_quaternion(const Piece& field, std::size_t element,
                                      std::span<const double> weights) {
   Eigen::Vector4d sum = Eigen::Vector4d::Zero();
-  const double* first = &field.values[static_cast<std::size_t>(element) * weights.size() * 4];
+  const double* first = field.of(element);
   for (std::size_t p = 0; p < weights.size(); ++p) {
     const Eigen::Map<const Eigen::Vector4d> q(first + 4 * p), q0(first);
     sum += weights[p] * (q.dot(q0) < 0 ? Eigen::Vector4d(-q) : Eigen::Vector4d(q));
   }
   if (!(sum.norm() > 0))
-    throw core::InternalError(
-        fmt::format("results/element_values: no mean orientation in element {}", element + 1));
+    throw core::InternalError("results/element_values: an element without mean orientation");
   sum.normalize();
   return {sum[0], sum[1], sum[2], sum[3]};
 }
@@ -128,15 +137,24 @@ core::Vec6 plain(const double* v) { return Eigen::Map<const core::Vec6>(v); }
 }  // namespace
 
 ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
-  const int n = s.mesh.element_count(), points = s.quadrature_points;
-  const auto* orientation = field_of(s, "orientation", Location::quadrature_point, 4);
-  const auto* g = field_of(s, "g", Location::quadrature_point);
-  const auto* slip = field_of(s, "slip", Location::quadrature_point);
-  const auto* strain = field_of(s, "equivalent_strain", Location::quadrature_point, 1);
-  const auto* stress = field_of(s, "cauchy_stress", Location::quadrature_point, 6);
-  const auto* element_stress = field_of(s, "cauchy_stress", Location::element, 6);
-  const auto* pressure = field_of(s, "pressure", Location::element, 1);
+  return element_values(s, mesh::reader_of(s), value, 0, s.mesh.tetrahedra.size());
+}
 
+ElementTable element_values(const mesh::Snapshot& s, const mesh::FieldReader& read,
+                            ElementValue value, std::size_t first, std::size_t last) {
+  const auto points = Location::quadrature_point;
+  const auto piece = [&](const char* name, Location location, int components = 0) {
+    return piece_of(s, read, name, location, first, last, components);
+  };
+  const auto orientation = piece("orientation", points, 4);
+  const auto g = piece("g", points);
+  const auto slip = piece("slip", points);
+  const auto strain = piece("equivalent_strain", points, 1);
+  const auto stress = piece("cauchy_stress", points, 6);
+  const auto element_stress = piece("cauchy_stress", Location::element, 6);
+  const auto pressure = piece("pressure", Location::element, 1);
+
+  const std::size_t n = last - first;
   ElementTable t;
   t.volume.resize(n);
   t.centroid.resize(n);
@@ -146,23 +164,22 @@ ElementTable element_values(const mesh::Snapshot& s, ElementValue value) {
   t.equivalent_strain.assign(n, unset);
   t.cauchy_stress.assign(n, core::Vec6::Zero());
   t.pressure.resize(n);
-  for (int e = 0; e < n; ++e) {
-    const auto x = element_nodes(s.mesh, e);
+  for (std::size_t e = 0; e < n; ++e) {
+    const auto x = element_nodes(s.mesh, static_cast<int>(first + e));
     measure(x, t.volume[e], t.centroid[e]);
-    const auto w = point_weights(x, points, value);
-    if (orientation != nullptr)
+    const auto w = point_weights(x, s.quadrature_points, value);
+    if (orientation)
       t.orientation[e] = value == ElementValue::average ? mean_quaternion(*orientation, e, w)
                                                         : centroid_quaternion(*orientation, e, w);
-    if (g != nullptr) t.g[e] = mean<Eigen::Dynamic>(*g, e, w).mean();
-    if (slip != nullptr) t.slip[e] = mean<Eigen::Dynamic>(*slip, e, w).sum();
-    if (strain != nullptr) t.equivalent_strain[e] = mean<1>(*strain, e, w)[0];
-    if (stress != nullptr)
+    if (g) t.g[e] = mean<Eigen::Dynamic>(*g, e, w).mean();
+    if (slip) t.slip[e] = mean<Eigen::Dynamic>(*slip, e, w).sum();
+    if (strain) t.equivalent_strain[e] = mean<1>(*strain, e, w)[0];
+    if (stress)
       t.cauchy_stress[e] = mean<6>(*stress, e, w);
-    else if (element_stress != nullptr)
-      t.cauchy_stress[e] = plain(&element_stress->values[6 * static_cast<std::size_t>(e)]);
-    t.pressure[e] = stress == nullptr && pressure != nullptr
-                        ? pressure->values[e]
-                        : -t.cauchy_stress[e].head<3>().sum() / 3;
+    else if (element_stress)
+      t.cauchy_stress[e] = plain(element_stress->of(e));
+    t.pressure[e] =
+        !stress && pressure ? *pressure->of(e) : -t.cauchy_stress[e].head<3>().sum() / 3;
   }
   return t;
 }

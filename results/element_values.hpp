@@ -1,6 +1,7 @@
 #pragma once
 // One value an element of the fields at quadrature points: mean, or value at the centroid.
 
+#include <cstddef>
 #include <vector>
 
 #include "core/types.hpp"
@@ -31,5 +32,8 @@ struct ElementTable {
 /// quaternion is zero or not finite, or there is no rule of so many points (one: a value an
 /// element).
 ElementTable element_values(const mesh::Snapshot& snapshot, ElementValue value);
+/// The same for the elements first ... last - 1 of an outline.
+ElementTable element_values(const mesh::Snapshot& outline, const mesh::FieldReader& read,
+                            ElementValue value, std::size_t first, std::size_t last);
 
 }  // namespace polyslip::results

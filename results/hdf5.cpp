@@ -152,6 +152,32 @@ void File::write(const std::string& name, Number type, std::span<const std::uint
           "cannot write " + name);
 }
 
+void File::create_dataset(const std::string& name, Number type,
+                          std::span<const std::uint64_t> shape) {
+  const Quiet quiet;
+  const Space space = space_of(shape, path_);
+  const Dataset dataset = make_dataset(file_.get(), name, file_type(type), space.get(), path_);
+}
+
+void File::write_rows(const std::string& name, Number type, std::uint64_t first,
+                      std::uint64_t count, const void* data) {
+  const Quiet quiet;
+  const std::string what = "cannot write " + name;
+  const Dataset dataset(require(H5Dopen2(file_.get(), name.c_str(), H5P_DEFAULT), path_, what));
+  const Space space(require(H5Dget_space(dataset.get()), path_, what));
+  const int rank = require(H5Sget_simple_extent_ndims(space.get()), path_, what);
+  std::vector<hsize_t> sizes(static_cast<std::size_t>(rank)), start(sizes.size(), 0);
+  require(H5Sget_simple_extent_dims(space.get(), sizes.data(), nullptr), path_, what);
+  sizes.at(0) = count;
+  start.at(0) = first;
+  require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, sizes.data(),
+                              nullptr),
+          path_, what);
+  const Space memory(require(H5Screate_simple(rank, sizes.data(), nullptr), path_, what));
+  require(H5Dwrite(dataset.get(), memory_type(type), memory.get(), space.get(), H5P_DEFAULT, data),
+          path_, what);
+}
+
 void File::write_text(const std::string& name, const std::string& text) {
   const Quiet quiet;
   const Type type = text_type(path_);

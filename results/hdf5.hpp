@@ -54,6 +54,11 @@ class File {
   /// shape is a scalar.
   void write(const std::string& name, Number type, std::span<const std::uint64_t> shape,
              const void* data);
+  /// New dataset like that of `write`, whose rows are written later, each once.
+  void create_dataset(const std::string& name, Number type, std::span<const std::uint64_t> shape);
+  /// Rows first ... first + count - 1 of such a dataset.
+  void write_rows(const std::string& name, Number type, std::uint64_t first, std::uint64_t count,
+                  const void* data);
   void write_text(const std::string& name, const std::string& text);
   /// On a dataset or group ("/": the file).
   void write_attribute(const std::string& name, const std::string& attribute,

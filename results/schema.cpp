@@ -190,24 +190,58 @@ const DatasetSpec& dataset_spec(const std::string& name) {
       fmt::format("results/schema: no dataset '{}' in the table of a state file", name));
 }
 
-void TableWriter::put(const std::string& name, Number type, const void* data, std::size_t count) {
-  const auto& spec = dataset_spec(name);
+std::vector<std::uint64_t> TableWriter::shape_of(const DatasetSpec& spec,
+                                                 const std::string& name) const {
   std::vector<std::uint64_t> shape;
-  std::uint64_t expected = 1;
   for (const auto& word : spec.shape) {
     if (!is_number(word) && !sizes_.contains(word))
       throw core::InternalError(
           fmt::format("results/schema: {}: size of '{}' not set", name, word));
     shape.push_back(is_number(word) ? std::stoull(word) : sizes_.at(word));
-    expected *= shape.back();
   }
+  return shape;
+}
+
+void TableWriter::describe(const DatasetSpec& spec, const std::string& name) {
+  if (!spec.unit.empty()) file_.write_attribute(name, "unit", spec.unit);
+  file_.write_attribute(name, "location", spec.location);
+  if (!spec.name.ends_with("/*")) file_.write_attribute(name, "description", spec.description);
+}
+
+void TableWriter::put(const std::string& name, Number type, const void* data, std::size_t count) {
+  const auto& spec = dataset_spec(name);
+  const auto shape = shape_of(spec, name);
+  std::uint64_t expected = 1;
+  for (const auto size : shape) expected *= size;
   if (type != spec.type || count != expected)
     throw core::InternalError(fmt::format("results/schema: {}: {} values for a shape of ({})", name,
                                           count, fmt::join(shape, ", ")));
   file_.write(name, type, shape, data);
-  if (!spec.unit.empty()) file_.write_attribute(name, "unit", spec.unit);
-  file_.write_attribute(name, "location", spec.location);
-  if (!spec.name.ends_with("/*")) file_.write_attribute(name, "description", spec.description);
+  describe(spec, name);
+}
+
+void TableWriter::create(const std::string& name, Number type) {
+  const auto& spec = dataset_spec(name);
+  const auto shape = shape_of(spec, name);
+  if (type != spec.type || shape.empty())
+    throw core::InternalError(
+        fmt::format("results/schema: {}: of another type, or without rows", name));
+  file_.create_dataset(name, type, shape);
+  describe(spec, name);
+}
+
+void TableWriter::put_rows(const std::string& name, Number type, std::uint64_t first,
+                           const void* data, std::size_t count) {
+  const auto& spec = dataset_spec(name);
+  const auto shape = shape_of(spec, name);
+  std::uint64_t each = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) each *= shape[i];
+  const std::uint64_t rows = each > 0 ? count / each : 0;
+  if (type != spec.type || rows * each != count || first + rows > shape.at(0))
+    throw core::InternalError(
+        fmt::format("results/schema: {}: {} values from row {} on for a shape of ({})", name, count,
+                    first, fmt::join(shape, ", ")));
+  if (rows > 0) file_.write_rows(name, type, first, rows, data);
 }
 
 std::size_t TableReader::expect(const std::string& name, Number type) {

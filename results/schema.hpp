@@ -48,8 +48,23 @@ class TableWriter {
   void put_scalar(const std::string& name, T value) {
     put(name, std::span<const T>(&value, 1));
   }
+  /// New dataset of the table, whose rows follow, each once.
+  template <class T>
+  void create(const std::string& name) {
+    create(name, hdf5::number_of<T>());
+  }
+  /// The rows from `first` on of such a dataset. InternalError if the values are not whole rows.
+  template <class T>
+  void put_rows(const std::string& name, std::uint64_t first, const std::vector<T>& values) {
+    put_rows(name, hdf5::number_of<T>(), first, values.data(), values.size());
+  }
 
  private:
+  std::vector<std::uint64_t> shape_of(const DatasetSpec& spec, const std::string& name) const;
+  void describe(const DatasetSpec& spec, const std::string& name);
+  void create(const std::string& name, hdf5::Number type);
+  void put_rows(const std::string& name, hdf5::Number type, std::uint64_t first, const void* data,
+                std::size_t count);
   void put(const std::string& name, hdf5::Number type, const void* data, std::size_t count);
   hdf5::File& file_;
   std::map<std::string, std::uint64_t> sizes_;

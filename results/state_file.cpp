@@ -127,9 +127,15 @@ std::uint8_t colour_level(double level) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(level, 0.0, 255.0)));
 }
 
-/// What users look at: element means and the displacement (zero if the snapshot has none).
-void write_views(TableWriter& w, const mesh::Snapshot& s) {
-  const ElementTable t = element_values(s, ElementValue::average);
+/// Calls write(first, last) for so many nodes or elements, a piece at a time.
+template <class Write>
+void in_pieces(std::size_t count, const Write& write) {
+  constexpr std::size_t piece = 1 << 14;
+  for (std::size_t first = 0; first < count; first += piece)
+    write(first, std::min(first + piece, count));
+}
+
+void write_element_views(TableWriter& w, const ElementTable& t, std::size_t first) {
   std::vector<double> orientation, stress;
   Bytes colour;
   for (const auto& q : t.orientation) {
@@ -139,18 +145,32 @@ void write_views(TableWriter& w, const mesh::Snapshot& s) {
     for (int i = 0; i < 3; ++i) colour.push_back(colour_level(rgb[i]));
   }
   for (const auto& v : t.cauchy_stress) stress.insert(stress.end(), v.begin(), v.end());
-  w.put("elements/volume", t.volume);
-  w.put("elements/orientation", orientation);
-  w.put("elements/colour", colour);
-  w.put("elements/g", t.g);
-  w.put("elements/slip", t.slip);
-  w.put("elements/equivalent_strain", t.equivalent_strain);
-  w.put("elements/cauchy_stress", stress);
-  w.put("elements/pressure", t.pressure);
+  w.put_rows("elements/volume", first, t.volume);
+  w.put_rows("elements/orientation", first, orientation);
+  w.put_rows("elements/colour", first, colour);
+  w.put_rows("elements/g", first, t.g);
+  w.put_rows("elements/slip", first, t.slip);
+  w.put_rows("elements/equivalent_strain", first, t.equivalent_strain);
+  w.put_rows("elements/cauchy_stress", first, stress);
+  w.put_rows("elements/pressure", first, t.pressure);
+}
+
+/// What users look at: element means and the displacement (zero if the snapshot has none).
+void write_views(TableWriter& w, const mesh::Snapshot& s, const mesh::FieldReader& read) {
+  w.create<std::uint8_t>("elements/colour");
+  for (const char* name :
+       {"volume", "orientation", "g", "slip", "equivalent_strain", "cauchy_stress", "pressure"})
+    w.create<double>(std::string("elements/") + name);
+  in_pieces(s.mesh.tetrahedra.size(), [&](std::size_t first, std::size_t last) {
+    write_element_views(w, element_values(s, read, ElementValue::average, first, last), first);
+  });
   const auto* displacement = s.find("displacement", Location::node);
-  w.put("nodes/displacement", displacement != nullptr
-                                  ? displacement->values
-                                  : std::vector<double>(3 * s.mesh.nodes.size(), 0.0));
+  w.create<double>("nodes/displacement");
+  in_pieces(s.mesh.nodes.size(), [&](std::size_t first, std::size_t last) {
+    w.put_rows("nodes/displacement", first,
+               displacement != nullptr ? read(*displacement, first, last)
+                                       : std::vector<double>(3 * (last - first), 0.0));
+  });
 }
 
 void require_name(const std::string& name) {
@@ -158,7 +178,8 @@ void require_name(const std::string& name) {
     throw core::InternalError(fmt::format("results/state_file: '{}' cannot name a dataset", name));
 }
 
-void write_fields(hdf5::File& file, TableWriter& w, const mesh::Snapshot& s) {
+void write_fields(hdf5::File& file, TableWriter& w, const mesh::Snapshot& s,
+                  const mesh::FieldReader& read) {
   w.set_size("points", s.mesh.tetrahedra.size() * static_cast<std::uint64_t>(s.quadrature_points));
   int index = 0;
   for (const auto& field : s.fields) {
@@ -169,7 +190,12 @@ void write_fields(hdf5::File& file, TableWriter& w, const mesh::Snapshot& s) {
                                         [&](const auto& t) { return t.first == field.transport; });
     const std::string name = group->second + field.name;
     w.set_size("components", static_cast<std::uint64_t>(field.components));
-    w.put(name, field.values);
+    w.create<double>(name);
+    const std::size_t rows_each =
+        mesh::values_each(s, field) / static_cast<std::size_t>(field.components);
+    in_pieces(mesh::owner_count(s, field), [&](std::size_t first, std::size_t last) {
+      w.put_rows(name, first * rows_each, read(field, first, last));
+    });
     file.write_attribute(name, "unit", field.unit);
     file.write_attribute(name, "transport", transport->second);
     file.write_attribute(name, "description", field.description);
@@ -177,7 +203,7 @@ void write_fields(hdf5::File& file, TableWriter& w, const mesh::Snapshot& s) {
   }
 }
 
-void write_all(hdf5::File& file, const mesh::Snapshot& s) {
+void write_all(hdf5::File& file, const mesh::Snapshot& s, const mesh::FieldReader& read) {
   file.write_attribute("/", "file_type", state_file_type);
   file.write_attribute("/", "version", state_file_version);
   TableWriter w(file);
@@ -187,8 +213,8 @@ void write_all(hdf5::File& file, const mesh::Snapshot& s) {
   w.put_scalar<std::int32_t>("quadrature_points", s.quadrature_points);
   write_mesh(w, s.mesh);
   write_topology(w, s.mesh.topology);
-  write_views(w, s);
-  write_fields(file, w, s);
+  write_views(w, s, read);
+  write_fields(file, w, s, read);
   for (const auto& [name, values] : s.history) {
     require_name(name);
     w.set_size("values", values.size());
@@ -206,7 +232,8 @@ std::uint64_t room_for(const mesh::Snapshot& s) {
   constexpr std::uint64_t a_triangle = 28, a_line = 16, overhead = 1 << 18;
   std::uint64_t bytes = s.mesh.nodes.size() * a_node + s.mesh.tetrahedra.size() * an_element +
                         s.mesh.triangles.size() * a_triangle + s.mesh.lines.size() * a_line;
-  for (const auto& field : s.fields) bytes += 8 * field.values.size();
+  for (const auto& field : s.fields)
+    bytes += 8 * mesh::owner_count(s, field) * mesh::values_each(s, field);
   for (const auto& [name, text] : s.provenance) bytes += text.size();
   return bytes + bytes / 16 + overhead;
 }
@@ -301,11 +328,16 @@ std::vector<mesh::Field> read_fields(const hdf5::File& file, TableReader& r, int
 }  // namespace
 
 void write_state(const std::string& path, const mesh::Snapshot& snapshot) {
+  write_state(path, snapshot, mesh::reader_of(snapshot));
+}
+
+void write_state(const std::string& path, const mesh::Snapshot& outline,
+                 const mesh::FieldReader& read) {
   const std::string part = core::part_path(path);
-  core::require_room(path, room_for(snapshot));  // HDF5 crashes on a full disk
+  core::require_room(path, room_for(outline));  // HDF5 crashes on a full disk
   auto file = hdf5::File::create(part, header_size);
   try {
-    write_all(file, snapshot);
+    write_all(file, outline, read);
     file.close();
     seal(part);
   } catch (...) {

@@ -11,6 +11,10 @@ namespace polyslip::results {
 /// Writes `path` + ".part", adds the checksum, flushes and renames. Same snapshot, same bytes.
 /// InputError if the file cannot be written.
 void write_state(const std::string& path, const mesh::Snapshot& snapshot);
+/// The same file from an outline, whose fields are read and written piece by piece: what is held of
+/// them at a time is a few thousand nodes or elements.
+void write_state(const std::string& path, const mesh::Snapshot& outline,
+                 const mesh::FieldReader& read);
 
 /// The snapshot that was written, bit for bit. InputError, one line, for a file that is missing,
 /// truncated or altered ("... is damaged (...); ..."), of another type or of a newer version.

@@ -72,6 +72,11 @@ void StateSeries::write_index() const {
 }
 
 const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot) {
+  return store(snapshot, mesh::reader_of(snapshot));
+}
+
+const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot,
+                                      const mesh::FieldReader& read) {
   StateRecord state;
   state.file = state_name(static_cast<int>(states_.size()));
   state.strain = snapshot.strain;
@@ -80,7 +85,7 @@ const StateRecord& StateSeries::store(const mesh::Snapshot& snapshot) {
   state.order = snapshot.mesh.order;
   state.nodes = snapshot.mesh.node_count();
   state.elements = snapshot.mesh.element_count();
-  write_state(path(state), snapshot);
+  write_state(path(state), snapshot, read);
   states_.push_back(std::move(state));
   write_index();
   return states_.back();

@@ -20,6 +20,8 @@ class StateSeries {
 
   /// Stores the next state: results/state-<n>.h5. InputError if it cannot be written.
   const StateRecord& store(const mesh::Snapshot& snapshot);
+  /// The same from an outline, whose fields are read piece by piece.
+  const StateRecord& store(const mesh::Snapshot& outline, const mesh::FieldReader& read);
   /// The same for orientations without a mesh; there is no XDMF file of such states.
   const StateRecord& store(const OrientationState& state);
   /// InputError if there are fewer states, or one of their files is missing. Touches nothing.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "solver/body_state.hpp"
 #include "solver/discretisation.hpp"
 #include "solver/exchange.hpp"
 #include "solver/load_program.hpp"
@@ -18,7 +19,6 @@
 namespace polyslip::solver {
 namespace {
 
-using core::Transport;
 using mesh::Location;
 
 /// The stored partition if it was made for this number of ranks, else a new one. On rank 0.
@@ -30,13 +30,6 @@ std::vector<int> element_ranks(const mesh::Snapshot& snapshot, int ranks) {
     return {stored.begin(), stored.end()};
   }
   return partition_elements(snapshot.mesh, ranks);
-}
-
-std::vector<double> flat(const std::vector<core::Vec3>& points) {
-  std::vector<double> out;
-  out.reserve(3 * points.size());
-  for (const auto& p : points) out.insert(out.end(), {p[0], p[1], p[2]});
-  return out;
 }
 
 core::Vec3 box_size(MPI_Comm comm, const mesh::Snapshot& snapshot) {
@@ -60,9 +53,8 @@ struct Model::Impl {
   std::vector<int> ranks;  // rank 0: of each element
   Distribution distribution;
   NodeExchange exchange;
-  Configuration now;
-  std::vector<double> displacement;  // [local_nodes][3]
-  std::vector<double> element_stress, point_stress, volumes;
+  BodyState body;
+  Configuration& now = body.now;
   double strain = 0, time = 0;  // path of the load
   LoadProgram program;
   StepControl control;
@@ -94,12 +86,12 @@ struct Model::Impl {
       throw core::InternalError("Model: no element \"" + options.element + "\"");
     strain = broadcast(comm, base.strain);
     time = broadcast(comm, base.time);
-    read_configuration();
+    body = read_body(distribution, base, layout());
     restore_history();
     discretisation =
         std::make_unique<Discretisation>(distribution.local(), exchange, law, mixed, rule, now.x,
                                          read(field::reference_volume, Location::element, 1));
-    if (volumes.empty()) volumes = discretisation->reference_volumes();
+    if (body.volumes.empty()) body.volumes = discretisation->reference_volumes();
     newton = std::make_unique<NewtonSolver>(*discretisation, boundary, options, now.x);
     release_fields();
   }
@@ -115,40 +107,10 @@ struct Model::Impl {
     std::erase_if(base.fields, [&](const mesh::Field& f) { return is_of_model(f, law); });
   }
 
-  /// A field of the snapshot on this rank's entities; empty, on every rank, if there is none.
-  std::vector<double> read(const std::string& name, Location location, int components) const {
-    const auto values = root ? values_of(base, name, location) : std::vector<double>{};
-    if (!broadcast(comm, !values.empty())) return {};
-    const int points = location == Location::quadrature_point ? rule.points : 1;
-    return location == Location::node ? distribution.scatter_nodes(values, components)
-                                      : distribution.scatter_elements(values, components * points);
-  }
+  BodyLayout layout() const { return {law, rule, mixed}; }
 
-  void read_configuration() {
-    const auto& local = distribution.local();
-    const std::size_t elements = local.elements.size();
-    const std::size_t points = elements * static_cast<std::size_t>(rule.points);
-    now.x = distribution.scatter_nodes(root ? flat(base.mesh.nodes) : std::vector<double>{}, 3);
-    now.state = distribution.scatter_elements(
-        root ? state_blocks(base, law) : std::vector<double>{}, law.layout().size() * rule.slots);
-    // Without the volumes of zero stress there is no pressure: a fresh or remeshed body.
-    const bool stressed =
-        broadcast(comm, base.find(field::reference_volume, Location::element) != nullptr);
-    const auto take = [&](const std::string& name, Location at, int components, std::size_t count,
-                          double fallback) {
-      auto values = stressed ? read(name, at, components) : std::vector<double>{};
-      if (values.empty()) values.assign(count, fallback);
-      return values;
-    };
-    now.p = take(field::pressure, Location::element, 1, elements, 0);
-    for (double& p : now.p) p = -p;
-    now.volume_ratio =
-        fill_slots(take(field::volume_ratio, Location::quadrature_point, 1, points, 1), rule);
-    element_stress = take(field::cauchy_stress, Location::element, 6, elements * 6, 0);
-    point_stress = take(field::cauchy_stress, Location::quadrature_point, 6, points * 6, 0);
-    volumes = stressed ? read(field::volume, Location::element, 1) : std::vector<double>{};
-    displacement = read(field::displacement, Location::node, 3);
-    if (displacement.empty()) displacement.assign(now.x.size(), 0);
+  std::vector<double> read(const std::string& name, Location location, int components) const {
+    return scatter_field(distribution, base, name, location, components);
   }
 
   /// A history of `count` numbers on every rank; empty if there is none.
@@ -213,9 +175,9 @@ struct Model::Impl {
     for (std::size_t dof = 0; dof < x.size(); ++dof) {
       const std::size_t n = dof / 3;
       if (!newton->constrained()[dof] || newton->planar().owns(dof)) continue;
-      const core::Vec3 initial(now.x[3 * n] - displacement[3 * n],
-                               now.x[3 * n + 1] - displacement[3 * n + 1],
-                               now.x[3 * n + 2] - displacement[3 * n + 2]);
+      const core::Vec3 initial(now.x[3 * n] - body.displacement[3 * n],
+                               now.x[3 * n + 1] - body.displacement[3 * n + 1],
+                               now.x[3 * n + 2] - body.displacement[3 * n + 2]);
       x[dof] =
           boundary.position(local.node_faces[n], static_cast<int>(dof % 3), initial, load_strain);
     }
@@ -228,14 +190,14 @@ struct Model::Impl {
     std::vector<double> change(p.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
       departure[i] = x[i] - departure[i];
-      displacement[i] += x[i] - now.x[i];
+      body.displacement[i] += x[i] - now.x[i];
     }
     for (std::size_t e = 0; e < p.size(); ++e) change[e] = p[e] - now.p[e];
     predictor.record(departure, change, increment);
     discretisation->accept(x, p, now);
-    element_stress = discretisation->element_stress();
-    point_stress = discretisation->cauchy_stress();
-    volumes = discretisation->volumes();
+    body.element_stress = discretisation->element_stress();
+    body.point_stress = discretisation->cauchy_stress();
+    body.volumes = discretisation->volumes();
     time = program.time(end);
     strain = end;
     control.accepted(increment);
@@ -249,7 +211,7 @@ struct Model::Impl {
     time = program.time(strain);
     if (program.finished()) return;
     control = StepControl(loading);
-    predictor = Predictor(displacement.size(), now.p.size());
+    predictor = Predictor(body.displacement.size(), now.p.size());
     say(fmt::format("strain {:.6g}: stage {} of the load begins", strain, program.stage() + 1));
   }
 
@@ -259,9 +221,10 @@ struct Model::Impl {
   /// Of the body after the last step; zeros without one. Collective.
   std::array<double, 6> mean_stress() const {
     std::array<double, 7> sums{};
-    for (std::size_t e = 0; e < volumes.size(); ++e) {
-      for (std::size_t c = 0; c < 6; ++c) sums[c] += volumes[e] * element_stress[6 * e + c];
-      sums[6] += volumes[e];
+    for (std::size_t e = 0; e < body.volumes.size(); ++e) {
+      for (std::size_t c = 0; c < 6; ++c)
+        sums[c] += body.volumes[e] * body.element_stress[6 * e + c];
+      sums[6] += body.volumes[e];
     }
     sum(comm, sums.data(), 7);
     std::array<double, 6> mean{};
@@ -311,11 +274,11 @@ struct Model::Impl {
     if (!report.converged)
       throw core::RecoverableError(fmt::format(
           "strain {:.6g}: carried stresses do not come to equilibrium: {}", strain, report.reason));
-    for (std::size_t i = 0; i < x.size(); ++i) displacement[i] += x[i] - now.x[i];
+    for (std::size_t i = 0; i < x.size(); ++i) body.displacement[i] += x[i] - now.x[i];
     discretisation->accept(x, p, now);
-    element_stress = discretisation->element_stress();
-    point_stress = discretisation->cauchy_stress();
-    volumes = discretisation->volumes();
+    body.element_stress = discretisation->element_stress();
+    body.point_stress = discretisation->cauchy_stress();
+    body.volumes = discretisation->volumes();
   }
 
   /// A stage whose target of stress is met already ends where it begins.
@@ -365,14 +328,6 @@ struct Model::Impl {
     }
   }
 
-  void add(mesh::Snapshot& out, const std::string& name, Location location, int components,
-           const std::string& unit, Transport transport, const std::string& description,
-           std::vector<double> values) const {
-    if (root)
-      put(out,
-          mesh::Field{name, location, components, unit, transport, description, std::move(values)});
-  }
-
   /// [nodes] on rank 0 of [local_nodes][3]; empty elsewhere.
   std::vector<core::Vec3> gathered(const std::vector<double>& values) const {
     const auto all = distribution.gather_nodes(values, 3);
@@ -383,63 +338,41 @@ struct Model::Impl {
     return out;
   }
 
-  mesh::Snapshot snapshot() const {
-    const Stage stage(profile, "snapshot");
+  std::vector<FieldPart> fields() const {
+    return body_fields(body, layout(), distribution.local(), discretisation->reference_volumes(),
+                       predictor);
+  }
+
+  /// The snapshot on rank 0, but for the values of these fields.
+  mesh::Snapshot outline(const std::vector<FieldPart>& parts) const {
+    const auto x = gathered(now.x);
     mesh::Snapshot out = base;
-    const auto nodes = [&](const std::vector<double>& v) {
-      return distribution.gather_nodes(v, 3);
-    };
-    const auto elements = [&](const std::vector<double>& v, int components) {
-      return distribution.gather_elements(v, components);
-    };
-    const auto x = nodes(now.x);
-    const auto state = elements(now.state, law.layout().size() * rule.slots);
-    if (root) {
-      for (std::size_t n = 0; n < out.mesh.nodes.size(); ++n)
-        out.mesh.nodes[n] = {x[3 * n], x[3 * n + 1], x[3 * n + 2]};
-      put_state(out, law, state);
-      out.strain = strain;
-      out.time = time;
-      out.history[field::step_history] = control.history();
-      out.history[field::load_program] = program.history();
-      out.history[field::predictor_steps] = predictor.steps();
-      out.history[field::partition_ranks] = {static_cast<double>(size_of(comm))};
-    }
-    add(out, field::displacement, Location::node, 3, "L", Transport::shape_functions,
-        "from the initial position", nodes(displacement));
-    add(out, field::reference_volume, Location::element, 1, "L^3", Transport::not_carried,
-        "volume at zero pressure", elements(discretisation->reference_volumes(), 1));
-    add(out, field::volume, Location::element, 1, "L^3", Transport::not_carried,
-        "volume, by the points' quadrature", elements(volumes, 1));
-    add(out, field::cauchy_stress, Location::element, 6, "MPa", Transport::reset_to_zero,
-        "mean Cauchy stress: xx yy zz yz zx xy", elements(element_stress, 6));
-    add(out, field::cauchy_stress, Location::quadrature_point, 6, "MPa", Transport::reset_to_zero,
-        "Cauchy stress: xx yy zz yz zx xy", elements(point_stress, 6 * rule.points));
-    add(out, field::pressure, Location::element, 1, "MPa", Transport::reset_to_zero,
-        "minus the mean of the normal stresses", elements(pressures(), 1));
-    add(out, field::partition, Location::element, 1, "1", Transport::not_carried,
-        "rank that works on the element", {ranks.begin(), ranks.end()});
-    add(out, field::rate, Location::node, 3, "L", Transport::not_carried,
-        "predictor: departure from the homogeneous motion per unit strain, last step",
-        nodes(predictor.rate()));
-    add(out, field::previous_rate, Location::node, 3, "L", Transport::not_carried,
-        "predictor: the same in the step before", nodes(predictor.previous_rate()));
-    add(out, field::pressure_rate, Location::element, 1, "MPa", Transport::not_carried,
-        "predictor: mean stress per unit strain", elements(predictor.pressure_rate(), 1));
-    if (!mixed)
-      add(out, field::volume_ratio, Location::quadrature_point, 1, "1", Transport::not_carried,
-          "volume of the point over its volume at zero pressure",
-          elements(drop_filling(now.volume_ratio, rule), rule.points));
+    if (!root) return out;
+    out.mesh.nodes = x;
+    out.strain = strain;
+    out.time = time;
+    out.history[field::step_history] = control.history();
+    out.history[field::load_program] = program.history();
+    out.history[field::predictor_steps] = predictor.steps();
+    out.history[field::partition_ranks] = {static_cast<double>(size_of(comm))};
+    for (const FieldPart& part : parts) put(out, part.outline);
     return out;
   }
 
-  std::vector<double> pressures() const {
-    std::vector<double> out(now.p.size());
-    for (std::size_t e = 0; e < out.size(); ++e) {
-      const double* s = &element_stress[6 * e];
-      out[e] = mixed ? -now.p[e] : -(s[0] + s[1] + s[2]) / 3;
-    }
+  mesh::Snapshot snapshot() const {
+    const Stage stage(profile, "snapshot");
+    const auto parts = fields();
+    mesh::Snapshot out = outline(parts);
+    fill_fields(distribution, parts, out);
     return out;
+  }
+
+  void show(const SnapshotUse& use) const {
+    const Stage stage(profile, "snapshot");
+    const auto parts = fields();
+    mesh::Snapshot out = outline(parts);
+    serve_fields(distribution, parts, out,
+                 [&](const mesh::FieldReader& fields_of) { use(out, fields_of); });
   }
 };
 
@@ -481,32 +414,6 @@ std::vector<core::Vec3> Model::departure_rates() const {
   return impl_->gathered(impl_->predictor.rate());
 }
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
-
-mesh::Snapshot initial_snapshot(mesh::Mesh mesh, const std::vector<core::Quaternion>& orientations,
-                                const material::CrystalLaw& law, int quadrature_points) {
-  const auto size = static_cast<std::size_t>(law.layout().size());
-  const auto grains = static_cast<std::size_t>(mesh.topology.cell_count());
-  if (orientations.size() != grains)
-    throw core::InternalError(fmt::format("initial_snapshot: {} orientations for {} grains",
-                                          orientations.size(), grains));
-  std::vector<double> states(grains * size);
-  for (std::size_t g = 0; g < grains; ++g) law.initial_state(orientations[g], &states[g * size]);
-  mesh::Snapshot out;
-  out.mesh = std::move(mesh);
-  out.quadrature_points = quadrature_points;
-  const auto slots = static_cast<std::size_t>(point_rule(quadrature_points).slots);
-  constexpr std::size_t lanes = material::lanes;
-  std::vector<double> blocks;
-  blocks.reserve(out.mesh.tetrahedra.size() * size * slots);
-  for (const int grain : out.mesh.tetrahedron_cell)
-    for (std::size_t block = 0; block < slots / lanes; ++block)
-      for (std::size_t c = 0; c < size; ++c)
-        blocks.insert(blocks.end(), lanes, states[static_cast<std::size_t>(grain) * size + c]);
-  put_state(out, law, blocks);
-  put(out,
-      mesh::Field{field::displacement, Location::node, 3, "L", Transport::shape_functions,
-                  "from the initial position", std::vector<double>(3 * out.mesh.nodes.size(), 0)});
-  return out;
-}
+void Model::show(const SnapshotUse& use) const { impl_->show(use); }
 
 }  // namespace polyslip::solver

@@ -30,6 +30,8 @@ struct StepRecord {
   double min_jacobian_ratio = 1;                       ///< worst element: min det J / mean det J
 };
 
+using SnapshotUse = std::function<void(mesh::Snapshot& outline, const mesh::FieldReader& read)>;
+
 /// Collective throughout. Snapshots live on rank 0 (others pass anything). Between two of them no
 /// rank holds a field of the whole body; rank 0 keeps the mesh as it was at the start.
 class Model {
@@ -73,6 +75,10 @@ class Model {
   std::vector<core::Vec3> departure_rates() const;
   /// Mesh, state, derived fields and history on rank 0; an empty snapshot elsewhere.
   mesh::Snapshot snapshot() const;
+  /// Calls `use` on rank 0 with the snapshot's outline and a reader of its fields, which the other
+  /// ranks answer: for files, without a field of the whole body on any rank. An exception of `use`
+  /// is thrown on every rank.
+  void show(const SnapshotUse& use) const;
 
  private:
   struct Impl;

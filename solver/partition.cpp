@@ -119,17 +119,38 @@ std::vector<double> pick(const std::vector<double>& values, const std::vector<in
   return picked;
 }
 
-std::vector<double> place(const std::vector<std::vector<double>>& parts,
-                          const std::vector<std::vector<int>>& entities, int components) {
-  std::size_t total = 0;
-  for (const auto& part : parts) total += part.size();
-  std::vector<double> values(total);
-  for (std::size_t r = 0; r < parts.size(); ++r)
-    for (std::size_t i = 0; i < parts[r].size() / components; ++i)
-      for (int c = 0; c < components; ++c)
-        values[static_cast<std::size_t>(entities[r][i]) * components + c] =
-            parts[r][i * components + c];
-  return values;
+/// Where in an ascending list of mesh numbers those from `first` to `last` - 1 stand.
+std::pair<std::size_t, std::size_t> range_of(std::span<const int> entities, std::size_t first,
+                                             std::size_t last) {
+  const auto at = [&](std::size_t number) {
+    return static_cast<std::size_t>(
+        std::lower_bound(entities.begin(), entities.end(), static_cast<int>(number)) -
+        entities.begin());
+  };
+  return {at(first), at(last)};
+}
+
+/// made(r), called on rank 0, arrives on rank r: one part after the other, so that rank 0 holds no
+/// second copy of them all. Collective.
+std::vector<double> hand_out(MPI_Comm comm,
+                             const std::function<std::vector<double>(int rank)>& made) {
+  constexpr int tag = 4;
+  std::vector<double> part;
+  if (rank_of(comm) == 0) {
+    for (int r = 1; r < size_of(comm); ++r) {
+      part = made(r);
+      const auto count = static_cast<std::int64_t>(part.size());
+      MPI_Send(&count, 1, MPI_INT64_T, r, tag, comm);
+      MPI_Send(part.data(), message_size(part.size() * sizeof(double)), MPI_BYTE, r, tag, comm);
+    }
+    return made(0);
+  }
+  std::int64_t count = 0;
+  MPI_Recv(&count, 1, MPI_INT64_T, 0, tag, comm, MPI_STATUS_IGNORE);
+  part.resize(static_cast<std::size_t>(count));
+  MPI_Recv(part.data(), message_size(part.size() * sizeof(double)), MPI_BYTE, 0, tag, comm,
+           MPI_STATUS_IGNORE);
+  return part;
 }
 
 }  // namespace
@@ -206,34 +227,71 @@ Distribution::Distribution(MPI_Comm comm, const mesh::Mesh& mesh,
 
 std::vector<double> Distribution::scatter_nodes(const std::vector<double>& values,
                                                 int components) const {
-  std::vector<std::vector<double>> parts(nodes_of_.size());
-  if (rank_of(local_.comm) == 0)
-    for (std::size_t r = 0; r < parts.size(); ++r)
-      parts[r] = pick(values, nodes_of_[r], components);
-  return scatter(local_.comm, parts);
+  return hand_out(local_.comm, [&](int r) {
+    return pick(values, nodes_of_[static_cast<std::size_t>(r)], components);
+  });
 }
 
 std::vector<double> Distribution::scatter_elements(const std::vector<double>& values,
                                                    int components) const {
-  std::vector<std::vector<double>> parts(elements_of_.size());
-  if (rank_of(local_.comm) == 0)
-    for (std::size_t r = 0; r < parts.size(); ++r)
-      parts[r] = pick(values, elements_of_[r], components);
-  return scatter(local_.comm, parts);
+  return hand_out(local_.comm, [&](int r) {
+    return pick(values, elements_of_[static_cast<std::size_t>(r)], components);
+  });
+}
+
+AppendRows rows_of(const std::vector<double>& values, std::size_t each) {
+  return [&values, each](std::size_t first, std::size_t last, std::vector<double>& out) {
+    out.insert(out.end(), values.begin() + static_cast<std::ptrdiff_t>(first * each),
+               values.begin() + static_cast<std::ptrdiff_t>(last * each));
+  };
 }
 
 std::vector<double> Distribution::gather_nodes(const std::vector<double>& values,
                                                int components) const {
-  const std::vector<double> owned(
-      values.begin(), values.begin() + static_cast<long>(local_.owned_nodes) * components);
-  const auto parts = gather(local_.comm, owned);
-  return parts.empty() ? std::vector<double>{} : place(parts, nodes_of_, components);
+  const auto each = static_cast<std::size_t>(components);
+  return gather_node_rows(rows_of(values, each), 0, static_cast<std::size_t>(local_.global_nodes),
+                          each);
 }
 
 std::vector<double> Distribution::gather_elements(const std::vector<double>& values,
                                                   int components) const {
-  const auto parts = gather(local_.comm, values);
-  return parts.empty() ? std::vector<double>{} : place(parts, elements_of_, components);
+  const auto each = static_cast<std::size_t>(components);
+  return gather_element_rows(rows_of(values, each), 0,
+                             static_cast<std::size_t>(local_.global_elements), each);
+}
+
+std::vector<double> Distribution::gather_node_rows(const AppendRows& append, std::size_t first,
+                                                   std::size_t last, std::size_t each) const {
+  const std::span<const int> all(local_.node_mesh);
+  return gather_rows(append, all.first(static_cast<std::size_t>(local_.owned_nodes)), true, first,
+                     last, each);
+}
+
+std::vector<double> Distribution::gather_element_rows(const AppendRows& append, std::size_t first,
+                                                      std::size_t last, std::size_t each) const {
+  return gather_rows(append, local_.element_mesh, false, first, last, each);
+}
+
+std::vector<double> Distribution::gather_rows(const AppendRows& append, std::span<const int> mine,
+                                              bool nodes, std::size_t first, std::size_t last,
+                                              std::size_t each) const {
+  const auto [from, to] = range_of(mine, first, last);
+  std::vector<double> sent;
+  sent.reserve((to - from) * each);
+  append(from, to, sent);
+  const auto parts = gather(local_.comm, sent);
+  if (parts.empty()) return {};
+  std::vector<double> values((last - first) * each);
+  for (std::size_t r = 0; r < parts.size(); ++r) {
+    std::span<const int> theirs = nodes ? nodes_of_[r] : elements_of_[r];
+    if (nodes) theirs = theirs.first(static_cast<std::size_t>(owned_of_[r]));
+    const auto [begin, end] = range_of(theirs, first, last);
+    for (std::size_t i = begin; i < end; ++i)
+      std::copy_n(parts[r].begin() + static_cast<std::ptrdiff_t>((i - begin) * each), each,
+                  values.begin() + static_cast<std::ptrdiff_t>(
+                                       (static_cast<std::size_t>(theirs[i]) - first) * each));
+  }
+  return values;
 }
 
 NodeExchange::NodeExchange(const LocalMesh& local, Profile* profile)

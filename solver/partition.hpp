@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -41,6 +43,11 @@ struct LocalMesh {
   bool owned(int node) const { return node < owned_nodes; }
 };
 
+/// Appends the values at this rank's owned nodes or elements first ... last - 1 (local numbers).
+using AppendRows = std::function<void(std::size_t first, std::size_t last, std::vector<double>&)>;
+/// Rows of an array [nodes or elements][each], which has to outlive them.
+AppendRows rows_of(const std::vector<double>& values, std::size_t each);
+
 /// A mesh spread over the ranks, and the way there and back for its fields.
 class Distribution {
  public:
@@ -56,12 +63,21 @@ class Distribution {
   /// [local_nodes][components] (owned ones are read) -> [mesh nodes][components] on rank 0.
   std::vector<double> gather_nodes(const std::vector<double>& values, int components) const;
   std::vector<double> gather_elements(const std::vector<double>& values, int components) const;
+  /// Values of the mesh's nodes or elements first ... last - 1, `each` of one, on rank 0; empty
+  /// elsewhere. Collective.
+  std::vector<double> gather_node_rows(const AppendRows& append, std::size_t first,
+                                       std::size_t last, std::size_t each) const;
+  std::vector<double> gather_element_rows(const AppendRows& append, std::size_t first,
+                                          std::size_t last, std::size_t each) const;
 
  private:
   LocalMesh local_;
   // On rank 0: for each rank its local nodes and its elements, as mesh numbers.
   std::vector<std::vector<int>> nodes_of_, elements_of_;
   std::vector<int> owned_of_;
+
+  std::vector<double> gather_rows(const AppendRows& append, std::span<const int> mine, bool nodes,
+                                  std::size_t first, std::size_t last, std::size_t each) const;
 };
 
 /// Values of nodes between their owner and the ranks that see them as ghosts. One message each way

@@ -18,14 +18,12 @@ std::size_t entities(const mesh::Snapshot& snapshot, Location location) {
   return snapshot.mesh.tetrahedra.size() * static_cast<std::size_t>(each);
 }
 
-/// Index of component c of the point or filling `slot` in [elements][blocks][size][lane].
-std::size_t in_blocks(const PointRule& rule, std::size_t size, std::size_t element, std::size_t c,
-                      int slot) {
-  return element * size * static_cast<std::size_t>(rule.slots) +
-         static_cast<std::size_t>(PointRule::at(static_cast<int>(size), static_cast<int>(c), slot));
-}
-
 }  // namespace
+
+std::size_t state_index(const PointRule& rule, int size, std::size_t element, int c, int slot) {
+  return element * static_cast<std::size_t>(size) * static_cast<std::size_t>(rule.slots) +
+         static_cast<std::size_t>(PointRule::at(size, c, slot));
+}
 
 void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law, int points) {
   if (snapshot.mesh.order != 2 || snapshot.mesh.tetrahedra.empty())
@@ -45,26 +43,27 @@ void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& la
           fmt::format("Model: field \"{}\" has {} values", f.name, f.values.size()));
 }
 
-std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material::CrystalLaw& law) {
-  const auto size = static_cast<std::size_t>(law.layout().size());
-  const std::size_t elements = snapshot.mesh.tetrahedra.size();
-  const PointRule& rule = point_rule(snapshot.quadrature_points);
-  const auto points = static_cast<std::size_t>(rule.points);
-  std::vector<double> blocks(elements * size * static_cast<std::size_t>(rule.slots));
-  std::size_t offset = 0;
-  for (const auto& wanted : law.layout().fields) {
-    const auto& values = snapshot.find(wanted.name, Location::quadrature_point)->values;
-    const auto components = static_cast<std::size_t>(wanted.components);
-    for (std::size_t e = 0; e < elements; ++e)
-      for (int slot = 0; slot < rule.slots; ++slot) {
-        const auto q = static_cast<std::size_t>(std::min(slot, rule.points - 1));
-        for (std::size_t c = 0; c < components; ++c)
-          blocks[in_blocks(rule, size, e, offset + c, slot)] =
-              values[(e * points + q) * components + c];
-      }
-    offset += components;
-  }
-  return blocks;
+void append_state(const PointRule& rule, int size, int offset, int components,
+                  const std::vector<double>& blocks, std::size_t first, std::size_t last,
+                  std::vector<double>& out) {
+  for (std::size_t e = first; e < last; ++e)
+    for (int q = 0; q < rule.points; ++q)
+      for (int c = 0; c < components; ++c)
+        out.push_back(blocks[state_index(rule, size, e, offset + c, q)]);
+}
+
+void fill_state(const PointRule& rule, int size, int offset, int components,
+                const std::vector<double>& values, std::vector<double>& blocks) {
+  const auto each = static_cast<std::size_t>(components),
+             points = static_cast<std::size_t>(rule.points);
+  const std::size_t elements = values.size() / (each * points);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (int slot = 0; slot < rule.slots; ++slot) {
+      const auto q = static_cast<std::size_t>(std::min(slot, rule.points - 1));
+      for (int c = 0; c < components; ++c)
+        blocks[state_index(rule, size, e, offset + c, slot)] =
+            values[(e * points + q) * each + static_cast<std::size_t>(c)];
+    }
 }
 
 std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string& name,
@@ -82,13 +81,6 @@ std::vector<double> fill_slots(const std::vector<double>& values, const PointRul
     out.insert(out.end(), at, at + points);
     out.insert(out.end(), static_cast<std::size_t>(rule.slots - rule.points), *(at + points - 1));
   }
-  return out;
-}
-
-std::vector<double> drop_filling(const std::vector<double>& values, const PointRule& rule) {
-  std::vector<double> out;
-  for (auto at = values.begin(); at != values.end(); at += rule.slots)
-    out.insert(out.end(), at, at + rule.points);
   return out;
 }
 
@@ -116,13 +108,10 @@ void put(mesh::Snapshot& snapshot, mesh::Field field) {
 
 void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
                const std::vector<double>& blocks) {
-  const auto size = static_cast<std::size_t>(law.layout().size());
-  const std::size_t elements = snapshot.mesh.tetrahedra.size();
+  const int size = law.layout().size();
   const PointRule& rule = point_rule(snapshot.quadrature_points);
-  const auto points = static_cast<std::size_t>(rule.points);
-  std::size_t offset = 0;
+  int offset = 0;
   for (const auto& part : law.layout().fields) {
-    const auto components = static_cast<std::size_t>(part.components);
     mesh::Field f{part.name,
                   Location::quadrature_point,
                   part.components,
@@ -130,14 +119,11 @@ void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,
                   part.transport,
                   part.description,
                   {}};
-    f.values.resize(elements * points * components);
-    for (std::size_t e = 0; e < elements; ++e)
-      for (int q = 0; q < rule.points; ++q)
-        for (std::size_t c = 0; c < components; ++c)
-          f.values[(e * points + static_cast<std::size_t>(q)) * components + c] =
-              blocks[in_blocks(rule, size, e, offset + c, q)];
+    f.values.reserve(entities(snapshot, f.location) * static_cast<std::size_t>(part.components));
+    append_state(rule, size, offset, part.components, blocks, 0, snapshot.mesh.tetrahedra.size(),
+                 f.values);
     put(snapshot, std::move(f));
-    offset += components;
+    offset += part.components;
   }
 }
 

@@ -33,9 +33,18 @@ inline const std::string partition_ranks = "solver_partition_ranks";  // {ranks}
 /// and each state field of the law, of the right size.
 void check_fields(const mesh::Snapshot& snapshot, const material::CrystalLaw& law, int points);
 
-/// The law's state in blocks: [elements][blocks][layout size][4], the last block filled with
-/// repetitions of the last point (solver/reference_element.hpp).
-std::vector<double> state_blocks(const mesh::Snapshot& snapshot, const material::CrystalLaw& law);
+/// Index of component c of a point, or filling, `slot` in the law's state, which stands in blocks:
+/// [elements][blocks][size][4], the last block of an element filled with repetitions of its last
+/// point (solver/reference_element.hpp).
+std::size_t state_index(const PointRule& rule, int size, std::size_t element, int c, int slot);
+/// Components offset ... offset + components - 1 of such blocks at the points of the elements
+/// first ... last - 1, appended: [elements][points][components].
+void append_state(const PointRule& rule, int size, int offset, int components,
+                  const std::vector<double>& blocks, std::size_t first, std::size_t last,
+                  std::vector<double>& out);
+/// The way back, for all elements.
+void fill_state(const PointRule& rule, int size, int offset, int components,
+                const std::vector<double>& values, std::vector<double>& blocks);
 
 /// Values of a field; empty if there is none.
 std::vector<double> values_of(const mesh::Snapshot& snapshot, const std::string& name,
@@ -47,10 +56,8 @@ bool is_of_model(const mesh::Field& field, const material::CrystalLaw& law);
 /// Replaces the field of that name and location, or adds it.
 void put(mesh::Snapshot& snapshot, mesh::Field field);
 
-/// Numbers of points with those that fill blocks, [elements][slots], out of [elements][points], and
-/// back.
+/// Numbers of points with those that fill blocks, [elements][slots], out of [elements][points].
 std::vector<double> fill_slots(const std::vector<double>& values, const PointRule& rule);
-std::vector<double> drop_filling(const std::vector<double>& values, const PointRule& rule);
 
 /// The state fields out of blocks, put into the snapshot.
 void put_state(mesh::Snapshot& snapshot, const material::CrystalLaw& law,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "core/error.hpp"
@@ -77,6 +78,47 @@ std::string error_of(const std::string& path) {
     return e.what();
   }
   return "";
+}
+
+/// The snapshot without its fields' values.
+mesh::Snapshot outline_of(mesh::Snapshot s) {
+  for (auto& field : s.fields) field.values.clear();
+  return s;
+}
+
+TEST(StateFile, AnOutlineReadPieceByPieceGivesTheSameBytes) {
+  const tests::TemporaryFolder folder;
+  const mesh::Snapshot whole = fabricated_snapshot(12, 0.3);
+  ASSERT_GT(whole.mesh.element_count(), 20000);
+  const mesh::FieldReader values = mesh::reader_of(whole);
+  std::size_t most = 0;
+  const mesh::FieldReader read = [&](const mesh::Field& field, std::size_t first,
+                                     std::size_t last) {
+    most = std::max(most, last - first);
+    return values(*whole.find(field.name, field.location), first, last);
+  };
+  write_state(folder / "whole.h5", whole);
+  write_state(folder / "pieces.h5", outline_of(whole), read);
+  EXPECT_TRUE(tests::slurp(folder / "pieces.h5") == tests::slurp(folder / "whole.h5"));
+  EXPECT_GT(most, 0u);
+  EXPECT_LT(most, 20000u);
+  expect_same(read_state(folder / "pieces.h5"), whole);
+}
+
+TEST(StateFile, AReaderThatFailsLeavesTheEarlierFile) {
+  const tests::TemporaryFolder folder;
+  const mesh::Snapshot whole = fabricated_snapshot(1, 0.3);
+  write_state(folder / "a.h5", whole);
+  const std::string before = tests::slurp(folder / "a.h5");
+  int left = 5;
+  const mesh::FieldReader values = mesh::reader_of(whole);
+  const auto read = [&](const mesh::Field& field, std::size_t first, std::size_t last) {
+    if (--left == 0) throw core::RecoverableError("no more");
+    return values(*whole.find(field.name, field.location), first, last);
+  };
+  EXPECT_THROW(write_state(folder / "a.h5", outline_of(whole), read), core::RecoverableError);
+  EXPECT_EQ(tests::slurp(folder / "a.h5"), before);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.h5.part"));
 }
 
 TEST(StateFile, ReadsBackBitForBit) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -140,6 +141,45 @@ TEST(Model, FailureEverywhereIsRecoverableAndLeavesTheState) {
     if (f.name == "displacement") {
       for (double u : f.values) ASSERT_EQ(u, 0);
     }
+}
+
+TEST(Model, ShowsRankByRankWhatItsSnapshotHolds) {
+  const tests::ElasticLaw law(30, 100);
+  Model model(MPI_COMM_WORLD, box(law, 0.1), law, one_step(1e-4), tight(), {});
+  model.step(1e-4);
+  const mesh::Snapshot whole = model.snapshot();
+  std::size_t pieces = 0;
+  model.show([&](const mesh::Snapshot& outline, const mesh::FieldReader& read) {
+    EXPECT_EQ(outline.mesh.nodes, whole.mesh.nodes);
+    EXPECT_EQ(outline.history, whole.history);
+    ASSERT_EQ(outline.fields.size(), whole.fields.size());
+    for (std::size_t f = 0; f < outline.fields.size(); ++f) {
+      const mesh::Field& field = outline.fields[f];
+      ASSERT_EQ(field.name, whole.fields[f].name);
+      EXPECT_TRUE(field.values.empty());
+      const std::size_t owners = mesh::owner_count(outline, field);
+      std::vector<double> values;
+      for (std::size_t first = 0; first < owners; first += 17, ++pieces) {
+        const auto some = read(field, first, std::min(first + 17, owners));
+        values.insert(values.end(), some.begin(), some.end());
+      }
+      EXPECT_EQ(values, whole.fields[f].values) << field.name;
+    }
+  });
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  EXPECT_EQ(pieces > 0, rank == 0);
+}
+
+TEST(Model, AFailureInReadingItsFieldsReachesEveryRank) {
+  const tests::ElasticLaw law(30, 100);
+  Model model(MPI_COMM_WORLD, box(law), law, one_step(1e-4), tight(), {});
+  EXPECT_THROW(model.show([](const mesh::Snapshot& outline, const mesh::FieldReader& read) {
+    read(outline.fields.front(), 0, 1);
+    throw core::InputError("the disk is full");
+  }),
+               core::InputError);
+  EXPECT_EQ(model.step(1e-4).strain, 1e-4);
 }
 
 TEST(Model, AnInvertedElementCutsTheStep) {
