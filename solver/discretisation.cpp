@@ -183,16 +183,16 @@ void Discretisation::sum_forces() {
   exchange_.add_ghosts(forces_, 3);
 }
 
-double Discretisation::augmentation(double modulus) const {
-  return std::min(augmentation_weight * modulus, bulk_);
+double Discretisation::augmentation(double modulus, double weight) const {
+  return std::min(weight * modulus, bulk_);
 }
 
-void Discretisation::linearise_element(std::size_t e) {
+void Discretisation::linearise_element(std::size_t e, double weight) {
   ElementGeometry geometry;
   geometry_of(e, geometry);
   const double mu =
       std::max(element_shear_modulus(geometry, &tangent_[54 * e * slots_]), 1e-6 * shear_);
-  const double V = geometry.volume, w = augmentation(mu) / V, compliance = V / bulk_;
+  const double V = geometry.volume, w = augmentation(mu, weight) / V, compliance = V / bulk_;
   ElementForces b;
   element_volume_gradient(geometry, b);
   double squares = 0;
@@ -210,7 +210,7 @@ void Discretisation::linearise_element(std::size_t e) {
   }
 }
 
-LinearBlocks Discretisation::linearise() {
+LinearBlocks Discretisation::linearise(double weight) {
   const Stage stage(exchange_.profile(), "linearisation");
   LinearBlocks blocks;
   blocks.x = x_.data();
@@ -223,7 +223,7 @@ LinearBlocks Discretisation::linearise() {
   }
   const int n = local_.element_count();
 #pragma omp parallel for schedule(static)
-  for (int e = 0; e < n; ++e) linearise_element(static_cast<std::size_t>(e));
+  for (int e = 0; e < n; ++e) linearise_element(static_cast<std::size_t>(e), weight);
   blocks.kappa = kappa_;
   blocks.reference = reference_.data();
   blocks.departure = departure_.data();

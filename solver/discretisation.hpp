@@ -26,9 +26,16 @@ struct Configuration {
 enum class Evaluation : int { fine = 0, inverted = 1, point_failed = 2, not_finite = 3 };
 std::string describe(Evaluation evaluation);
 
+/// Linear solves to this relative tolerance or less take other settings than those to 1e-2
+/// (measured: docs/benchmarks.md, solves to 1e-8).
+inline constexpr double tight_tolerance = 1e-4;
+
 /// Weight of the augmentation by the elements' volume gradients, relative to the local tangent
-/// shear modulus (measured optimum: design notes in docs/theory-solver.md).
-inline constexpr double augmentation_weight = 4;
+/// shear modulus. To 1e-2 the smoother counts, which a large weight slows down; to 1e-8 the few
+/// pressures that the mesh hardly controls do, and the larger it is the fewer iterations they take.
+inline constexpr double augmentation_weight(double linear_tolerance) {
+  return linear_tolerance > tight_tolerance ? 4 : 12;
+}
 
 class Discretisation {
  public:
@@ -43,10 +50,10 @@ class Discretisation {
   Evaluation evaluate(const Configuration& old, const std::vector<double>& x,
                       const std::vector<double>& p, double time_step, double kappa);
 
-  /// The linearised equations at the last evaluation. Rows and columns of the mean stresses are
-  /// scaled by `pressure_scale`: [A B^T; B -C] becomes [A B^T D; D B -D C D]. Valid until the next
-  /// evaluation.
-  LinearBlocks linearise();
+  /// The linearised equations at the last evaluation; weight: of the augmentation. Rows and columns
+  /// of the mean stresses are scaled by `pressure_scale`: [A B^T; B -C] becomes [A B^T D; D B -D C
+  /// D]. Valid until the next evaluation.
+  LinearBlocks linearise(double weight);
 
   /// Action of the tangent of these elements on displacements u [local_nodes][3] and mean stresses
   /// p [elements], nothing eliminated: forces A u + B^T p (complete on owned nodes) and volumes B u
@@ -112,8 +119,8 @@ class Discretisation {
   Evaluation update_material(const Configuration& old, double time_step);
   void sum_forces();
   /// W V of an element [MPa]: no more than K, where W = 1/C condenses the pressure exactly.
-  double augmentation(double modulus) const;
-  void linearise_element(std::size_t element);
+  double augmentation(double modulus, double weight) const;
+  void linearise_element(std::size_t element, double weight);
 };
 
 }  // namespace polyslip::solver

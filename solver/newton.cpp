@@ -51,6 +51,13 @@ LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t
 /// Share of the tolerance on forces below which a linear system need not be solved.
 constexpr double margin = 0.3;
 
+/// More sweeps go with the larger weight of the augmentation.
+LinearSettings settings_for(double linear_tolerance) {
+  LinearSettings settings;
+  if (linear_tolerance <= tight_tolerance) settings.multigrid.sweeps_after = 6;
+  return settings;
+}
+
 }  // namespace
 
 NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& boundary,
@@ -60,7 +67,8 @@ NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& bound
       options_(options),
       constrained_(constrained_dofs(discretisation.local(), boundary)),
       planar_(discretisation.local(), boundary),
-      linear_(std::make_unique<LinearSolver>(make_layout(discretisation, constrained_, x))) {
+      linear_(std::make_unique<LinearSolver>(make_layout(discretisation, constrained_, x),
+                                             settings_for(options.linear_tolerance))) {
   const LocalMesh& local = discretisation_.local();
   ru_ = create_vector(local.comm, 3 * local.owned_nodes, 3);
   du_ = create_vector(local.comm, 3 * local.owned_nodes, 3);
@@ -78,7 +86,8 @@ NewtonSolver::NewtonSolver(Discretisation& discretisation, const Boundary& bound
 
 void NewtonSolver::drop_setup(const std::vector<double>& x) {
   linear_.reset();
-  linear_ = std::make_unique<LinearSolver>(make_layout(discretisation_, constrained_, x));
+  linear_ = std::make_unique<LinearSolver>(make_layout(discretisation_, constrained_, x),
+                                           settings_for(options_.linear_tolerance));
   responses_.clear();
 }
 
@@ -104,7 +113,7 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
       return report;
     }
     ++report.iterations;
-    linear_->set_blocks(discretisation_.linearise());
+    linear_->set_blocks(discretisation_.linearise(augmentation_weight(options_.linear_tolerance)));
     const double before = report.balance.free_norm;
     if (!solve_linear(forcing(report.balance, gain), report)) return report;
     const std::vector<double> x0 = x;
