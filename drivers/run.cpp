@@ -118,6 +118,7 @@ mesh::Snapshot RunJob::take_up(const results::CheckpointFile& file) {
   log_.to_file(path(results::log_name));
   log_.info("polyslip {}: {}: going on from strain {:.6g} ({})", core::version(), request_.folder,
             snapshot.strain, file.path);
+  snapshot.provenance.clear();  // of the checkpoint; states do not repeat it
   return snapshot;
 }
 

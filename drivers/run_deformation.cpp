@@ -59,12 +59,14 @@ double RunJob::next_target() const {
   return next ? next->strain : core::unbounded;
 }
 
-void RunJob::step() {
-  const auto taken = [&] {
-    const auto measure = times_.measure("deformation");
-    return model_->step(next_target());
-  }();
-  record(taken);
+solver::StepRecord RunJob::take_step(int max_cuts) {
+  const auto measure = times_.measure("deformation");
+  try {
+    return model_->step(next_target(), max_cuts);
+  } catch (const solver::StepFailure& failure) {
+    progress_.add_attempts(failure.tried);
+    throw;
+  }
 }
 
 void RunJob::record(const solver::StepRecord& step) {
@@ -82,7 +84,7 @@ void RunJob::record(const solver::StepRecord& step) {
 
 void RunJob::advance() {
   try {
-    step();
+    record(take_step());
   } catch (const core::RecoverableError& error) {
     // A new mesh has a step's worth of strain behind it: one made here would be the same again.
     const bool tried_here = model_->strain() <= progress_.last_attempt + same_strain;

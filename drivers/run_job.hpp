@@ -53,9 +53,10 @@ class RunJob {
   void deform();
   /// One step, or a remeshing and a step, because none converged.
   void advance();
-  /// One step, counted and written.
-  void step();
+  /// One step; of one that fails the attempts are counted.
+  solver::StepRecord take_step(int max_cuts = solver::any_cuts);
   double next_target() const;
+  /// Counts and writes a step.
   void record(const solver::StepRecord& step);
   /// Stores, writes checkpoints and remeshes, as is due at this strain.
   void arrive();

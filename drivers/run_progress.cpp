@@ -1,6 +1,7 @@
 #include "drivers/run_progress.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -13,9 +14,7 @@ using nlohmann::json;
 
 void RunProgress::add(const solver::StepRecord& step) {
   ++rows;
-  cuts += step.cuts;
-  newton_iterations += step.newton_iterations;
-  linear_iterations += step.linear_iterations;
+  add_attempts(step);
   const double now = von_mises(step.stress);
   if (step.step_size > 0) slope = (now - von_mises(stress)) / step.step_size;
   stress = step.stress;
@@ -23,6 +22,19 @@ void RunProgress::add(const solver::StepRecord& step) {
   const auto reloaded = reload.step(step.strain, now);
   if (reloaded.strain) remeshings.back().strain_to_reload = reloaded.strain;
   if (reloaded.ratio) remeshings.back().reloaded_stress_ratio = reloaded.ratio;
+}
+
+void RunProgress::add_attempts(const solver::StepRecord& tried) {
+  cuts += tried.cuts;
+  newton_iterations += tried.newton_iterations;
+  linear_iterations += tried.linear_iterations;
+}
+
+void RunProgress::go_back(RunProgress before) {
+  before.cuts = cuts;
+  before.newton_iterations = newton_iterations;
+  before.linear_iterations = linear_iterations;
+  *this = std::move(before);
 }
 
 std::string RunProgress::text() const {

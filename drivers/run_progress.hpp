@@ -47,6 +47,10 @@ struct RunProgress {
 
   /// Counts an accepted step.
   void add(const solver::StepRecord& step);
+  /// Counts attempts at a step that failed.
+  void add_attempts(const solver::StepRecord& tried);
+  /// Back to what was, but for the attempts counted since.
+  void go_back(RunProgress before);
 
   /// Text that holds all of it, numbers exactly.
   std::string text() const;

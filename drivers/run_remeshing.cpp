@@ -76,7 +76,7 @@ bool RunJob::remesh(const mesh::Snapshot& old) {
     } catch (const core::RecoverableError& error) {
       reason = error.what();
       if (dynamic_cast<const AuditFailure*>(&error)) beyond_limits = reason;
-      progress_ = before;
+      progress_.go_back(before);
       log_.warning("remeshing, {}: {}", attempt.what, reason);
     }
   }
@@ -96,10 +96,7 @@ void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const me
   if (attempt.remeshing.transport.stress == "carried") model_->relax();
   measure_new_mesh();
   const mesh::Snapshot start = model_->snapshot();
-  const auto first = [&] {
-    const auto measure = times_.measure("deformation");
-    return model_->step(next_target(), first_step_cuts);
-  }();
+  const solver::StepRecord first = take_step(first_step_cuts);
   log_.info(remeshing_text(report));
   store(start);  // the other side of the same strain
   on_root(comm_, [&] {

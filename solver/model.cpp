@@ -317,14 +317,16 @@ struct Model::Impl {
       const bool go_on = control.cut(increment);
       say(fmt::format("strain {:.6g}: step of {:.3g} cut: {}", strain, increment, report.reason));
       if (!go_on)
-        throw core::RecoverableError(
+        throw StepFailure(
             fmt::format("strain {:.6g}: the step fell below min_strain_increment = {:g}; last "
                         "failure: {}",
-                        strain, loading.min_strain_increment, report.reason));
+                        strain, loading.min_strain_increment, report.reason),
+            counters);
       if (counters.cuts > max_cuts)
-        throw core::RecoverableError(
+        throw StepFailure(
             fmt::format("strain {:.6g}: no step converged, down to {:.3g}; last failure: {}",
-                        strain, increment, report.reason));
+                        strain, increment, report.reason),
+            counters);
     }
   }
 

@@ -5,10 +5,12 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "core/error.hpp"
 #include "material/crystal_law.hpp"
 #include "mesh/snapshot.hpp"
 #include "solver/boundary.hpp"
@@ -29,6 +31,18 @@ struct StepRecord {
   int cuts = 0;                                        ///< attempts that failed before this one
   double min_jacobian_ratio = 1;                       ///< worst element: min det J / mean det J
 };
+
+/// No step converged, however small.
+class StepFailure : public core::RecoverableError {
+ public:
+  /// tried: counters of the attempts.
+  StepFailure(const std::string& reason, const StepRecord& tried_in_vain)
+      : RecoverableError(reason), tried(tried_in_vain) {}
+  StepRecord tried;
+};
+
+/// A step may be cut as often as min_strain_increment lets it.
+inline constexpr int any_cuts = std::numeric_limits<int>::max();
 
 using SnapshotUse = std::function<void(mesh::Snapshot& outline, const mesh::FieldReader& read)>;
 
@@ -58,10 +72,10 @@ class Model {
   /// Whether the load has come to its end.
   bool finished() const;
   /// One accepted step that does not pass `target_strain` nor the end of the load's stage. Throws
-  /// core::InternalError if the load is finished, RecoverableError, on every rank,
+  /// core::InternalError if the load is finished, StepFailure, on every rank,
   /// when the step falls below the smallest one or was cut `max_cuts` times in vain; the state is
   /// then that of the last accepted step.
-  StepRecord step(double target_strain, int max_cuts = 1000);
+  StepRecord step(double target_strain, int max_cuts = any_cuts);
   /// Brings the stresses of the snapshot (carried over a remeshing) to equilibrium with the
   /// boundary held, in a time too short to flow. Throws core::RecoverableError, on every rank, if
   /// Newton's method does not converge.

@@ -35,7 +35,7 @@ bool StepControl::cut(double taken) {
 void StepControl::restore(const std::vector<double>& history) {
   if (history.size() != 1 || !(history[0] > 0))
     throw core::InternalError("StepControl: the stored step size is not one");
-  size_ = history[0];
+  size_ = std::max(history[0], options_.min_strain_increment);
 }
 
 }  // namespace polyslip::solver

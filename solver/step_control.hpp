@@ -24,7 +24,8 @@ class StepControl {
   bool cut(double taken);
 
   double size() const { return size_; }
-  /// For a checkpoint, and back; throws core::InternalError if `history` is not one.
+  /// For a checkpoint, and back; throws core::InternalError if `history` is not one. After a stop
+  /// for steps too small the next one is of the smallest size allowed.
   std::vector<double> history() const { return {size_}; }
   void restore(const std::vector<double>& history);
 

@@ -126,9 +126,20 @@ class Generator {
   std::string solver() {
     std::string text =
         fmt::format("[solver]\nnewton_tolerance = {:.1e}\n", log_uniform(1e-6, 1e-3));
-    if (!happens(0.1)) return text;
+    const bool to_be_stopped = happens(0.1);
+    text += element();
+    if (!to_be_stopped) return text;
     summary_ += ", to be stopped";
     return text + "max_newton_iterations = 1\n";
+  }
+
+  /// The mixed element with its four points as often as all others together.
+  std::string element() {
+    if (happens(0.5)) return "";
+    const char* kind = one_of<3>({"mixed", "displacement", "displacement-straight"});
+    const char* points = one_of<4>({"4", "8", "14", "15"});
+    summary_ += fmt::format(", {} with {} points", kind, points);
+    return fmt::format("element = \"{}\"\nquadrature_points = {}\n", kind, points);
   }
 };
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 
 #include "results/names.hpp"
@@ -139,14 +140,12 @@ void kill_at_every_moment(int ranks) {
 TEST(Restart, AfterAKillAtAnyMomentEndsTheSame) { kill_at_every_moment(0); }
 TEST(Restart, AfterAKillAtAnyMomentEndsTheSameOnTwoRanks) { kill_at_every_moment(2); }
 
-/// Fifteen points fill four blocks but for one lane; their states cross the remeshing too.
-TEST(Restart, KeepsTheStatesOfOtherElementsAndPoints) {
-  Sandbox sandbox;
-  const std::string deck = small_deck("", "element = \"displacement\"\nquadrature_points = 15\n");
+/// A run of this deck that is killed at its first checkpoint ends as one that nobody disturbs. The
+/// sandbox then holds both.
+void kill_once(const Sandbox& sandbox, const std::string& deck) {
   run_deck(sandbox, 0, deck, "undisturbed");
   ASSERT_FALSE(::testing::Test::HasFailure());
   const fs::path run = sandbox.path() / "killed";
-  EXPECT_EQ(last_state(sandbox.path() / "undisturbed").quadrature_points, 15);
   sandbox.write("killed.toml", deck);
   Program program(on_ranks(0, {"run", "killed.toml", "--out", "killed"}), sandbox.path());
   ASSERT_TRUE(eventually(120, [&] { return has_checkpoint(run, 1) || program.ended(); }));
@@ -156,11 +155,31 @@ TEST(Restart, KeepsTheStatesOfOtherElementsAndPoints) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("going on from strain"), std::string::npos) << outcome.out;
   expect_same_run(sandbox.path() / "undisturbed", run);
+}
+
+/// Fifteen points fill four blocks but for one lane; their states cross the remeshing too.
+TEST(Restart, KeepsTheStatesOfOtherElementsAndPoints) {
+  Sandbox sandbox;
+  kill_once(sandbox, small_deck("", "element = \"displacement\"\nquadrature_points = 15\n"));
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  EXPECT_EQ(last_state(sandbox.path() / "undisturbed").quadrature_points, 15);
   const Outcome table = run_polyslip(
       {"convert", "killed", "--at-strain", "1", "--value", "centroid", "--to", "table.csv"},
       sandbox.path());
   EXPECT_EQ(table.code, 0) << table.err;
   EXPECT_GT(line_count(sandbox.path() / "table.csv"), 100);
+}
+
+TEST(Restart, KeepsTwelveUnequalStrengths) {
+  Sandbox sandbox;
+  kill_once(sandbox, small_deck() + "[material]\nlatent_ratio = 1.4\n");
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  const mesh::Snapshot last = last_state(sandbox.path() / "killed");
+  const auto* g = last.find("g", mesh::Location::quadrature_point);
+  ASSERT_NE(g, nullptr);
+  ASSERT_EQ(g->components, 12);
+  EXPECT_GT(*std::max_element(g->values.begin(), g->values.begin() + 12),
+            *std::min_element(g->values.begin(), g->values.begin() + 12) + 1e-3);
 }
 
 /// What a kill can leave: rows, states and meshes beyond the checkpoint, torn lines, parts of

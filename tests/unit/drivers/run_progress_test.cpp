@@ -38,6 +38,24 @@ TEST(RunProgress, CountsStepsAndTheReloading) {
   EXPECT_NEAR(*p.remeshings[0].strain_to_reload, 0.002 * 0.99 / 2, 1e-12);
 }
 
+TEST(RunProgress, KeepsTheCountOfAttemptsInVain) {
+  RunProgress p;
+  p.rows = 7;
+  p.cuts = 2;
+  const RunProgress before = p;
+  solver::StepRecord tried;
+  tried.cuts = 5;
+  tried.newton_iterations = 40;
+  tried.linear_iterations = 300;
+  p.rows = 8;
+  p.add_attempts(tried);
+  p.go_back(before);
+  EXPECT_EQ(p.rows, 7);
+  EXPECT_EQ(p.cuts, 7);
+  EXPECT_EQ(p.newton_iterations, 40);
+  EXPECT_EQ(p.linear_iterations, 300);
+}
+
 TEST(RunProgress, ComesBackFromItsText) {
   RunProgress p;
   p.rows = 41;

@@ -61,6 +61,15 @@ TEST(StepControl, FixedIncrementsStartAtTheLargest) {
   EXPECT_DOUBLE_EQ(c.next_end(0.28, 0.3), 0.3);
 }
 
+TEST(StepControl, ARestartAfterAStopTakesNoStepBelowTheSmallest) {
+  StepControl stopped(options()), again(options());
+  while (stopped.cut(stopped.size())) {
+  }
+  ASSERT_LT(stopped.size(), options().min_strain_increment);
+  again.restore(stopped.history());
+  EXPECT_EQ(again.size(), options().min_strain_increment);
+}
+
 TEST(StepControl, HistoryGoesRoundAndRubbishIsRefused) {
   StepControl a(options()), b(options());
   a.accepted(a.size());
