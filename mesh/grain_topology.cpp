@@ -8,6 +8,9 @@
 #include <tuple>
 
 #include "core/error.hpp"
+#include "mesh/disc_parts.hpp"
+#include "mesh/grain_surfaces.hpp"
+#include "mesh/panel_shape.hpp"
 #include "mesh/surface_panels.hpp"
 #include "mesh/translated_nodes.hpp"
 
@@ -43,7 +46,7 @@ class TopologyFinder {
     find_edges();
     find_loops();
     turn_slave_loops();
-    check_grains();
+    require_grain_surfaces(mesh_, names_);
   }
 
  private:
@@ -112,20 +115,23 @@ class TopologyFinder {
     return panel;
   }
 
-  /// Panels joined by mesh edges that no third one meets make a face.
+  /// Panels joined by mesh edges that no third one meets make a face, or several discs.
   void find_faces() {
     sides_ = sorted_sides();
     parent_.resize(panels_.size());
     std::iota(parent_.begin(), parent_.end(), 0);
+    std::vector<std::pair<int, int>> joints;
     for_each_mesh_edge(sides_, [&](const Side* first, std::size_t count) {
       if (!same_face_goes_on(first, count)) return;
+      joints.push_back({first[0].panel, first[1].panel});
       const int a = root(first[0].panel), b = root(first[1].panel);
       parent_[std::max(a, b)] = std::min(a, b);
     });
+    const std::vector<int> first_of = first_panels(std::move(joints));
     auto& t = mesh_.topology;
     face_of_.assign(panels_.size(), -1);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
-      const int r = root(static_cast<int>(p));
+      const int r = first_of[p];
       const Panel& panel = panels_[p];
       if (face_of_[r] < 0) {
         face_of_[r] = static_cast<int>(t.faces.size());
@@ -146,6 +152,29 @@ class TopologyFinder {
       mesh_.triangles.push_back(panels_[p].nodes);
       mesh_.triangle_face.push_back(face_of_[p]);
     }
+  }
+
+  /// The first panel of the disc that each panel is in.
+  std::vector<int> first_panels(std::vector<std::pair<int, int>> joints) {
+    TriangleSurface surface{{}, std::move(joints)};
+    for (const Panel& p : panels_)
+      surface.triangles.push_back({p.nodes[0], p.nodes[1], p.nodes[2]});
+    const auto parts = disc_parts(surface, mesh_.nodes, [&](const auto& part) {
+      return lies_flat(shape_of(mesh_, panels_, part));
+    });
+    std::vector<int> first, of_part;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      const int panel = static_cast<int>(p);
+      if (parts[p] == static_cast<int>(of_part.size())) of_part.push_back(panel);
+      first.push_back(of_part[parts[p]]);
+      if (panels_[p].twins >= 0 && first[p] != root(panel))
+        fail(
+            "the face of grain {} across the periodic boundary at {} is no disc that lies flat: it "
+            "is "
+            "not read",
+            names_[panels_[p].cell], at(panels_[p].nodes[0]));
+    }
+    return first;
   }
 
   /// Pairs of faces, by their panels. Triangles of slaves are put in the order of their masters',
@@ -210,7 +239,8 @@ class TopologyFinder {
 
   void find_segments() {
     for_each_mesh_edge(sides_, [&](const Side* first, std::size_t count) {
-      if (same_face_goes_on(first, count)) return;
+      if (same_face_goes_on(first, count) && face_of_[first[0].panel] == face_of_[first[1].panel])
+        return;
       Segment s{first->low, first->high, first->mid, {}};
       for (std::size_t i = 0; i < count; ++i) s.faces.push_back(face_of_[first[i].panel]);
       std::sort(s.faces.begin(), s.faces.end());
@@ -223,6 +253,45 @@ class TopologyFinder {
     }
   }
 
+  /// Nodes on the way along segments from a node to the next vertex, both included, or once round.
+  std::vector<int> chain(int node, int segment, const std::vector<char>& is_vertex,
+                         std::vector<char>& seen) const {
+    std::vector<int> nodes{node};
+    for (;;) {
+      const Segment& s = segments_[segment];
+      seen[segment] = true;
+      nodes.push_back(node = s.a == node ? s.b : s.a);
+      if (node == nodes.front() || is_vertex[translated_.place(node).master]) return nodes;
+      segment = next_segment(node, segment);
+    }
+  }
+
+  /// Vertices on edges that would have none or the same at both ends, and on those that would have
+  /// the same ends as another: new edges are straight, if coarse, and must not come together.
+  void part_edges(std::vector<char>& is_vertex) const {
+    const std::vector<char> given = is_vertex;
+    std::vector<char> seen(segments_.size(), false);
+    std::map<std::pair<int, int>, std::vector<std::vector<int>>> chains;  // by their ends
+    const auto visit = [&](int node, int segment) {
+      if (seen[segment]) return;
+      auto nodes = chain(node, segment, given, seen);
+      chains[std::minmax(nodes.front(), nodes.back())].push_back(std::move(nodes));
+    };
+    for (int n = 0; n < mesh_.node_count(); ++n)
+      if (given[translated_.place(n).master])
+        for (const int s : segments_at_[n]) visit(n, s);
+    for (std::size_t s = 0; s < segments_.size(); ++s) visit(segments_[s].a, static_cast<int>(s));
+    const auto mark = [&](int node) { is_vertex[translated_.place(node).master] = true; };
+    for (const auto& [ends, same] : chains)
+      for (const auto& nodes : same) {
+        const std::size_t n = nodes.size() - 1;
+        if (ends.first == ends.second)
+          for (const std::size_t i : {std::size_t{0}, n / 3, 2 * n / 3}) mark(nodes[i]);
+        else if (same.size() > 1 && n > 1)
+          mark(nodes[n / 2]);
+      }
+  }
+
   void find_vertices() {
     vertex_at_.assign(mesh_.nodes.size(), -1);
     // One that a single grain sees as a node of an edge may be a vertex for others elsewhere.
@@ -233,6 +302,7 @@ class TopologyFinder {
                                            segments_[here[0]].faces == segments_[here[1]].faces);
       if (!inside) is_vertex[translated_.place(n).master] = true;
     }
+    part_edges(is_vertex);
     for (int n = 0; n < mesh_.node_count(); ++n) {
       const auto& [master, shift] = translated_.place(n);
       if (!is_vertex[master]) continue;
@@ -247,10 +317,6 @@ class TopologyFinder {
     for (const int n : mesh_.vertex_nodes)
       for (const int s : segments_at_[n])
         if (segments_[s].edge < 0) find_edge(n, s);
-    for (const Segment& s : segments_)
-      if (s.edge < 0)
-        fail("the edge of the face {} at {} is closed and has no vertex; such grains are not read",
-             between(s.faces[0]), at(s.a));
   }
 
   /// The edge that leaves a vertex along a segment; one that is the translate of another, and its
@@ -309,11 +375,6 @@ class TopologyFinder {
       if (vertex_at_[node] >= 0) break;
       segment = next_segment(node, segment);
     }
-    if (vertex_at_[node] == from) {
-      const auto& face = t.faces[segments_[segment].faces[0]];
-      fail("an edge of grain {} runs from the vertex at {} back to it; such grains are not read",
-           names_[face.cells[0]], at(node));
-    }
     t.edges.push_back({{from, vertex_at_[node]}});
   }
 
@@ -352,7 +413,6 @@ class TopologyFinder {
     auto& t = mesh_.topology;
     auto& face = t.faces[f];
     const std::string name = between(f);
-    if (uses.empty()) fail("the face {} is closed: a grain inside another is not read", name);
     std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.edge < b.edge; });
     const auto start = [&](const Use& u) { return t.edges[u.edge].vertices[u.forward ? 0 : 1]; };
     const auto end = [&](const Use& u) { return t.edges[u.edge].vertices[u.forward ? 1 : 0]; };
@@ -393,35 +453,6 @@ class TopologyFinder {
       const auto by = first - loop.begin();
       std::rotate(face.edges.begin(), face.edges.begin() + by, face.edges.end());
       std::rotate(face.forward.begin(), face.forward.begin() + by, face.forward.end());
-    }
-  }
-
-  /// Each edge of a grain lies in two of its faces, and its surface is a sphere.
-  void check_grains() const {
-    const auto& t = mesh_.topology;
-    for (int c = 0; c < t.cell_count(); ++c) {
-      std::vector<int> edges, vertices;
-      for (const int f : t.cell_faces[c]) {
-        edges.insert(edges.end(), t.faces[f].edges.begin(), t.faces[f].edges.end());
-        const auto loop = t.face_vertices(f);
-        vertices.insert(vertices.end(), loop.begin(), loop.end());
-      }
-      std::sort(edges.begin(), edges.end());
-      for (std::size_t i = 0; i < edges.size(); i += 2)
-        if (i + 1 >= edges.size() || edges[i] != edges[i + 1] ||
-            (i + 2 < edges.size() && edges[i] == edges[i + 2]))
-          fail(
-              "grain {} is pinched: its faces do not meet two by two at the edge that starts at {}",
-              names_[c], at(mesh_.vertex_nodes[t.edges[edges[i]].vertices[0]]));
-      std::sort(vertices.begin(), vertices.end());
-      const auto v = std::unique(vertices.begin(), vertices.end()) - vertices.begin();
-      const auto euler =
-          v - static_cast<long>(edges.size() / 2) + static_cast<long>(t.cell_faces[c].size());
-      if (euler != 2)
-        fail(
-            "grain {} is not one ball (V - E + F = {} for its surface, not 2): it is in parts, has "
-            "a tunnel, or touches itself at a point",
-            names_[c], euler);
     }
   }
 

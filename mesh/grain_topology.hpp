@@ -10,12 +10,13 @@ namespace polyslip::mesh {
 /// the right length, its domain and size, and of a periodic mesh periodic_nodes: free facets whose
 /// nodes are translates of another's are of periodic faces; nodes within 1e-6 of the smallest side
 /// of a domain face that their facet lies on are put on it. A face is a connected set of facets
-/// between the same two grains, or one grain and the same face of the domain; faces meet in edges,
-/// edges end in vertices. Faces are numbered by their grains, edges and vertices by their first
-/// nodes. Throws InputError, naming the grain by `grain_names`, for what has no such topology:
-/// facets on the surface but on no face of the domain (a hole, a domain that is not convex),
-/// overlapping elements, edges without an end, faces that touch themselves or have holes, grains
-/// that are no balls.
+/// between the same two grains, or one grain and the same face of the domain; one that is no disc
+/// (closed, with holes, touching itself), or that no map lays flat, is parted into several that
+/// are. Faces meet in edges, edges end in vertices, on closed ones some are put. Faces are numbered
+/// by their grains, edges and vertices by their first nodes. Throws InputError, naming the grain by
+/// `grain_names`, for what has no such topology: facets on the surface but on no face of the domain
+/// (a hole, a domain that is not convex), overlapping elements, periodic faces that need
+/// parting, grains in parts, around others, or that touch themselves.
 void find_grain_topology(Mesh& mesh, const std::vector<int>& grain_names);
 
 }  // namespace polyslip::mesh

@@ -60,11 +60,13 @@ Measures topological(const Topology& t) {
   for (std::size_t c = 0; c < t.cell_faces.size(); ++c) {
     GrainMeasures& grain = m.grains[c];
     grain.inner = true;
-    std::vector<int> others;
+    std::vector<int> others, vertices;
     int sides = 0;
     for (const int f : t.cell_faces[c]) {
       const FaceMeasures& face = m.faces[f];
       sides += face.edges;
+      const auto loop = t.face_vertices(f);
+      vertices.insert(vertices.end(), loop.begin(), loop.end());
       if (face.domain_face >= 0) grain.inner = false;
       const int other = face.cells[0] == static_cast<int>(c) ? face.cells[1] : face.cells[0];
       if (other >= 0 && other != static_cast<int>(c)) others.push_back(other);
@@ -72,8 +74,10 @@ Measures topological(const Topology& t) {
     std::sort(others.begin(), others.end());
     grain.neighbours = static_cast<int>(std::unique(others.begin(), others.end()) - others.begin());
     grain.faces = static_cast<int>(t.cell_faces[c].size());
-    grain.edges = sides / 2;                         // an edge of a cell is in two of its faces
-    grain.vertices = grain.edges - grain.faces + 2;  // Euler
+    grain.edges = sides / 2;  // an edge of a cell is in two of its faces
+    std::sort(vertices.begin(), vertices.end());
+    grain.vertices =
+        static_cast<int>(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
     if (!grain.inner) continue;
     for (const int f : t.cell_faces[c]) {
       m.faces[f].inner = true;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "mesh/cell_surface.hpp"
 
 namespace polyslip::mesh {
 namespace {
@@ -155,38 +156,20 @@ std::vector<char> check_periodic(const Topology& t) {
   return periodic;
 }
 
-// Both faces of a cell at an edge must run along it in opposite directions, seen from the cell.
 void check_cell_surface(const Topology& t, int c) {
-  struct Side {
-    int edge;
-    bool forward;
-  };
-  std::vector<Side> sides;
-  std::vector<int> vertices;
-  for (const int f : t.cell_faces[c]) {
-    const auto& face = t.faces[f];
-    const bool outwards = face.cells[0] == c;
-    for (std::size_t i = 0; i < face.edges.size(); ++i) {
-      sides.push_back({face.edges[i], face.forward[i] == outwards});
-      vertices.push_back(start_of(t, face, i));
-    }
+  const auto [kind, where] = surface_fault(t, c);
+  switch (kind) {
+    case SurfaceFault::Kind::none:
+      return;
+    case SurfaceFault::Kind::edge_not_shared:
+      fail(fmt::format("edge {} is not in exactly two faces of cell {}", where, c));
+    case SurfaceFault::Kind::turned_about:
+      fail(fmt::format("faces of cell {} disagree in orientation at edge {}", c, where));
+    case SurfaceFault::Kind::parts:
+      fail(fmt::format("the surface of cell {} is in {} parts", c, where));
+    case SurfaceFault::Kind::touching:
+      fail(fmt::format("the surface of cell {} touches itself at vertex {}", c, where));
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& p, const Side& q) { return p.edge < q.edge; });
-  for (std::size_t i = 0; i < sides.size(); i += 2) {
-    const bool pair = i + 1 < sides.size() && sides[i].edge == sides[i + 1].edge;
-    const bool triple = i + 2 < sides.size() && sides[i].edge == sides[i + 2].edge;
-    if (!pair || triple)
-      fail(fmt::format("edge {} is not in exactly two faces of cell {}", sides[i].edge, c));
-    if (sides[i].forward == sides[i + 1].forward)
-      fail(fmt::format("faces of cell {} disagree in orientation at edge {}", c, sides[i].edge));
-  }
-  std::sort(vertices.begin(), vertices.end());
-  const int v = count(std::unique(vertices.begin(), vertices.end()) - vertices.begin());
-  const int e = count(sides.size() / 2), f = count(t.cell_faces[c].size());
-  if (v - e + f != 2)
-    fail(fmt::format("cell {} has {} vertices, {} edges, {} faces: Euler's V - E + F is {}", c, v,
-                     e, f, v - e + f));
 }
 
 void check_all_used(const Topology& t) {

@@ -38,9 +38,9 @@ struct Topology {
   /// Vertices of a face in the order of its loop; vertex i is the start of edge i.
   std::vector<int> face_vertices(int face) const;
   /// Throws InternalError if an invariant fails: loops closed, ids in range, each edge of a cell in
-  /// exactly two of its faces, Euler's formula V - E + F = 2 for each cell (degree-two vertices
-  /// included), cells[1] = -1 iff domain_face >= 0, below the number of the domain's faces, or the
-  /// face is one of a periodic pair; pairs as Periodicity says.
+  /// exactly two of its faces, each cell's surface connected and touching itself nowhere
+  /// (mesh/cell_surface.hpp), cells[1] = -1 iff domain_face >= 0, below the number of the domain's
+  /// faces, or the face is one of a periodic pair; pairs as Periodicity says.
   void check(int domain_faces = 6) const;
 };
 

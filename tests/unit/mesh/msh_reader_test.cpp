@@ -273,17 +273,31 @@ TEST(MshReader, RefusesWhatHasNoTopologyOfGrains) {
   expect(message([](const Vec3& x) { return x[0] > 2 && x[1] > 2 ? -1 : 0; }),
          "its domain is neither a box");
   expect(message([](const Vec3& x) { return centre(x) ? 1 : 0; }),
-         "the face between grains 1 and 2 is closed");
-  expect(message([](const Vec3& x) { return axis(x) && x[2] < 1 ? 1 : 0; }),
-         "the edge of the face of grain 1 on z0 at (0.419974, 0.419974, 0) is closed");
+         "grain 1 has a surface in 2 parts: it is in parts or has another grain inside");
   // Two cubes of a grain that meet in an edge only; in a corner only; nowhere.
   expect(message([](const Vec3& x) {
            return x[2] < 1 &&
                   ((x[0] < 1 && x[1] < 1) || (x[0] > 1 && x[0] < 2 && x[1] > 1 && x[1] < 2));
          }),
-         "an edge of grain 1 runs from the vertex at (0.419974, 0.419974, 0) back to it");
+         "grain 1 is pinched");
   expect(message([](const Vec3& x) { return (x.array() < 1).all() || (x.array() > 2).all(); }),
-         "grain 2 is not one ball");
+         "grain 2 has a surface in 2 parts");
+}
+
+/// A grain in a pit of another: a face with a hole around it, and an edge without a vertex.
+TEST(MshReader, PartsFacesWithHolesAndClosedEdges) {
+  const MeshFile read =
+      read_text_of(regrouped(cubes(), [](const Vec3& x) { return axis(x) && x[2] < 1 ? 1 : 0; }));
+  ASSERT_NO_THROW(check(read.mesh));
+  const auto found = sides(read.mesh.topology);
+  EXPECT_EQ(std::count(found.begin(), found.end(), std::array<int, 3>{0, -1, 4}), 2);
+  EXPECT_EQ(std::count(found.begin(), found.end(), std::array<int, 3>{1, -1, 4}), 1);
+  EXPECT_EQ(std::count(found.begin(), found.end(), std::array<int, 3>{0, 1, -1}), 1);
+  for (const auto& face : read.mesh.topology.faces) EXPECT_GE(face.edges.size(), 3U);
+  // From side to side: the other grain has a tunnel.
+  const MeshFile through =
+      read_text_of(regrouped(cubes(), [](const Vec3& x) { return axis(x) ? 1 : 0; }));
+  ASSERT_NO_THROW(check(through.mesh));
 }
 
 TEST(MshReader, ConvexDomainsComeBackWithTheNamesOfTheirSurfaces) {
