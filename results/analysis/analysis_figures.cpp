@@ -4,18 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "results/analysis/texture_maps.hpp"
 
 namespace polyslip::results::analysis {
 namespace {
 
-using core::Vec3;
-
-constexpr double undeformed = 1e-6;        // degrees of spread
-constexpr double grain_half_width = 0.07;  // rad, about 4 degrees: one grain is sharp
-constexpr double bin = 0.5;                // degrees
+constexpr double undeformed = 1e-6;  // degrees of spread
+constexpr double bin = 0.5;          // degrees
 
 std::string strain_label(double strain) { return fmt::format("strain {:.4g}", strain); }
 
@@ -26,37 +20,6 @@ std::vector<std::size_t> some_states(std::size_t count) {
   for (std::size_t i = 0; i < wanted; ++i)
     some.push_back(wanted == 1 ? count - 1 : i * (count - 1) / (wanted - 1));
   return some;
-}
-
-RunSample grain_of(const RunSample& sample, int grain) {
-  std::vector<bool> keep(sample.inner.size(), false);
-  keep.at(static_cast<std::size_t>(grain)) = true;
-  RunSample one;
-  one.sample = of_grains(sample, keep);
-  return one;
-}
-
-/// The upper ends of the four <111> axes of a crystal through all states, cut where they cross the
-/// rim.
-std::vector<std::vector<Place>> pole_paths(const Analysis& a, std::size_t grain) {
-  std::vector<std::vector<Place>> paths;
-  for (const Vec3& h : crystal_family({1, 1, 1})) {
-    if (h[2] < 0) continue;
-    std::vector<Place> path;
-    bool up = true;
-    for (std::size_t i = 0; i < a.spreads.size(); ++i) {
-      const Vec3 pole = a.spreads[i][grain].mean * h;
-      const bool now_up = pole[2] >= 0;
-      if (!path.empty() && now_up != up) {
-        paths.push_back(path);
-        path.clear();
-      }
-      up = now_up;
-      path.push_back(equal_area(now_up ? pole : Vec3(-pole)));
-    }
-    paths.push_back(path);
-  }
-  return paths;
 }
 
 }  // namespace
@@ -134,43 +97,6 @@ std::vector<Plot> correlation_plots(const Analysis& a) {
                      {s}});
   }
   return plots;
-}
-
-std::vector<Plot> grain_plots(const Analysis& a, int grain) {
-  const Sample sample = grain_of(a.samples.back(), grain).sample;
-  const auto vectors =
-      disorientation_vectors(sample, a.spreads.back()[static_cast<std::size_t>(grain)].mean);
-  std::vector<Plot> plots;
-  const char* names[] = {"about RD (degrees)", "about TD (degrees)", "about ND (degrees)"};
-  for (const auto& [i, j] : {std::pair{0, 1}, std::pair{1, 2}, std::pair{2, 0}}) {
-    Series s{"", Mark::points, {}, {}};
-    for (const Vec3& v : vectors) {
-      s.x.push_back(v[i]);
-      s.y.push_back(v[j]);
-    }
-    plots.push_back({fmt::format("Grain {} at strain {:.4g}", grain + 1, a.samples.back().strain),
-                     {names[i]},
-                     {names[j]},
-                     {s}});
-  }
-  return plots;
-}
-
-std::string path_svg(const Analysis& a, const std::vector<int>& grains) {
-  std::vector<MapPanel> panels;
-  for (const int grain : grains) {
-    const auto at = static_cast<std::size_t>(grain);
-    const PoleFigure figure(grain_of(a.samples.back(), grain).sample, {1, 1, 1}, grain_half_width);
-    panels.push_back(pole_figure_panel(disc_grid(figure, 61, a.options.threads),
-                                       fmt::format("grain {}, {{111}}", grain + 1)));
-    panels.back().paths = pole_paths(a, at);
-    panels.back().below = fmt::format("turned {:.1f}, spread {:.1f} degrees",
-                                      a.spreads.back()[at].rotation, a.spreads.back()[at].spread);
-  }
-  return map_svg(panels, 3,
-                 fmt::format("Rotation paths of grains to strain {:.4g} and their orientations "
-                             "there",
-                             a.samples.back().strain));
 }
 
 }  // namespace polyslip::results::analysis

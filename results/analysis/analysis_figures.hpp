@@ -17,11 +17,6 @@ std::vector<Plot> beta_plots(const Analysis& analysis);
 std::vector<Plot> spread_plots(const Analysis& analysis);
 /// A grain's spread at one strain against that at the strain before (fig. 21).
 std::vector<Plot> correlation_plots(const Analysis& analysis);
-/// Where the orientations of a grain lie about its mean in the last state (fig. 19): components of
-/// rotation vectors, degrees.
-std::vector<Plot> grain_plots(const Analysis& analysis, int grain);
-/// {111} pole figures of grains: the path of the mean and the density of the last state (fig. 13).
-std::string path_svg(const Analysis& analysis, const std::vector<int>& grains);
 
 /// Whether a state has a spread: not the undeformed ones.
 bool has_spread(const Analysis& analysis, std::size_t state);

@@ -10,6 +10,7 @@
 #include "core/file.hpp"
 #include "results/analysis/analysis_figures.hpp"
 #include "results/analysis/analysis_tables.hpp"
+#include "results/analysis/grain_figures.hpp"
 #include "results/names.hpp"
 #include "results/plot.hpp"
 
@@ -79,26 +80,8 @@ void put_sections(Folder& out, const Analysis& a, std::size_t state) {
   const auto rodrigues = rodrigues_grid(odf, 33, a.options.threads);
   out.put(in_analysis("odf-rodrigues-" + at + ".csv"), rodrigues_csv(rodrigues));
   out.put(in_analysis("odf-rodrigues-" + at + ".svg"),
-          map_svg(rodrigues_panels(rodrigues), 4,
+          map_svg(rodrigues_panels(sections_of(rodrigues)), 4,
                   "Sections of the ODF in Rodrigues space at strain " + at));
-}
-
-/// The grains to draw: those asked for, or the two largest that count.
-std::vector<int> drawn_grains(const Analysis& a, const std::vector<int>& asked) {
-  const auto& grains = a.spreads.back();
-  const int count = static_cast<int>(grains.size());
-  for (const int g : asked)
-    if (g < 0 || g >= count)
-      throw core::InputError(fmt::format("grain {}: there are {} grains", g + 1, count));
-  if (!asked.empty()) return asked;
-  std::vector<int> order;
-  for (int g = 0; g < count; ++g)
-    if (a.counted[static_cast<std::size_t>(g)]) order.push_back(g);
-  std::ranges::stable_sort(order, [&](int i, int j) {
-    return grains[static_cast<std::size_t>(i)].volume > grains[static_cast<std::size_t>(j)].volume;
-  });
-  if (order.size() > 2) order.erase(order.begin() + 2, order.end());
-  return order;
 }
 
 void put_spreads(Folder& out, const Analysis& a, const std::vector<int>& drawn) {
@@ -109,10 +92,12 @@ void put_spreads(Folder& out, const Analysis& a, const std::vector<int>& drawn) 
   out.put(in_analysis("spread-correlation.svg"), correlation_plots(a),
           "In-grain orientation spreads from strain to strain");
   if (!has_spread(a, a.spreads.size() - 1)) return;
-  out.put(in_analysis("rotation-paths.svg"), path_svg(a, drawn));
-  for (const int grain : drawn)
-    out.put(in_analysis(fmt::format("grain-{}.svg", grain + 1)), grain_plots(a, grain),
-            fmt::format("Orientations of grain {} about their mean", grain + 1));
+  std::vector<GrainPicture> pictures;
+  for (const int grain : drawn) pictures.push_back(grain_picture(a, grain));
+  out.put(in_analysis("rotation-paths.svg"), path_svg(a, pictures));
+  for (const GrainPicture& picture : pictures)
+    out.put(in_analysis(fmt::format("grain-{}.svg", picture.grain + 1)), grain_plots(a, picture),
+            fmt::format("Orientations of grain {} about their mean", picture.grain + 1));
 }
 
 }  // namespace

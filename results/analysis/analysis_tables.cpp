@@ -41,6 +41,14 @@ Json spread_json(const SpreadSummary& s) {
       {"deviation", s.deviation}, {"volume_mean", s.volume_mean}, {"correlation", s.correlation}};
 }
 
+constexpr const char* rodrigues_header = "r1,r2,r3,density\n";
+
+/// Empty outside of the fundamental region.
+std::string rodrigues_row(double r1, double r2, double r3, double density) {
+  if (std::abs(r1) + std::abs(r2) + std::abs(r3) > 1 + 1e-9) return {};
+  return fmt::format("{},{},{},{}\n", r1, r2, r3, density);
+}
+
 }  // namespace
 
 std::string index_csv(const Analysis& a) {
@@ -95,14 +103,22 @@ std::string bunge_csv(const BungeGrid& grid) {
 }
 
 std::string rodrigues_csv(const RodriguesGrid& grid) {
-  std::string text = "r1,r2,r3,density\n";
+  std::string text = rodrigues_header;
   for (int k = 0; k < grid.n; ++k)
     for (int j = 0; j < grid.n; ++j)
-      for (int i = 0; i < grid.n; ++i) {
-        const double r1 = grid.place(i), r2 = grid.place(j), r3 = grid.place(k);
-        if (std::abs(r1) + std::abs(r2) + std::abs(r3) <= 1 + 1e-9)
-          text += fmt::format("{},{},{},{}\n", r1, r2, r3, grid.at(i, j, k));
-      }
+      for (int i = 0; i < grid.n; ++i)
+        text += rodrigues_row(grid.place(i), grid.place(j), grid.place(k), grid.at(i, j, k));
+  return text;
+}
+
+std::string rodrigues_csv(const RodriguesSections& sections) {
+  const RodriguesGrid places{sections.n, {}};
+  std::string text = rodrigues_header;
+  std::size_t at = 0;
+  for (const double r3 : sections.r3)
+    for (int j = 0; j < sections.n; ++j)
+      for (int i = 0; i < sections.n; ++i)
+        text += rodrigues_row(places.place(i), places.place(j), r3, sections.density[at++]);
   return text;
 }
 

@@ -22,6 +22,7 @@ std::string spread_summary_csv(const Analysis& analysis);
 std::string bunge_csv(const BungeGrid& grid);
 /// r1,r2,r3,density within the fundamental region
 std::string rodrigues_csv(const RodriguesGrid& grid);
+std::string rodrigues_csv(const RodriguesSections& sections);
 /// figure,x,y,density within the disc or the triangle of the equal-area projection
 std::string pole_figure_rows(const DiscGrid& grid, const std::string& figure);
 std::string inverse_pole_figure_rows(const TriangleGrid& grid, const std::string& figure);

@@ -103,7 +103,7 @@ std::vector<MapPanel> pole_panels(const Analysis& a, const std::string& whose) {
 
 std::vector<MapPanel> section_panels(const Analysis& a, const std::string& whose) {
   const Odf odf(a.texture_sample(a.samples.size() - 1), a.options.half_width, a.options.symmetry);
-  auto panels = rodrigues_panels(rodrigues_grid(odf, 33, a.options.threads));
+  auto panels = rodrigues_panels(rodrigues_sections(odf, 33, a.options.threads));
   rename(panels, whose);
   return panels;
 }

@@ -45,6 +45,18 @@ std::vector<Place> rodrigues_outline(double r3) {
   return outline;
 }
 
+/// The place i of n between the ends of a cube's edge in Rodrigues space.
+double rodrigues_place(int i, int n) {
+  return 2 * i == n - 1 ? 0.0 : edge * (2.0 * i / (n - 1) - 1);
+}
+
+/// n by n places across r3.
+void add_layer(std::vector<Quaternion>& places, int n, double r3) {
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      places.push_back(core::from_rodrigues({rodrigues_place(i, n), rodrigues_place(j, n), r3}));
+}
+
 }  // namespace
 
 BungeGrid bunge_grid(const Odf& odf, double step, int threads) {
@@ -61,18 +73,40 @@ BungeGrid bunge_grid(const Odf& odf, double step, int threads) {
   return g;
 }
 
-double RodriguesGrid::place(int i) const { return edge * (2.0 * i / (n - 1) - 1); }
+double RodriguesGrid::place(int i) const { return rodrigues_place(i, n); }
 
 RodriguesGrid rodrigues_grid(const Odf& odf, int n, int threads) {
   RodriguesGrid g;
   g.n = n;
   std::vector<Quaternion> places;
-  for (int k = 0; k < n; ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        places.push_back(core::from_rodrigues({g.place(i), g.place(j), g.place(k)}));
+  for (int k = 0; k < n; ++k) add_layer(places, n, g.place(k));
   g.density = odf.at(places, threads);
   return g;
+}
+
+RodriguesSections rodrigues_sections(const Odf& odf, int n, int threads) {
+  RodriguesSections s;
+  s.n = n;
+  std::vector<Quaternion> places;
+  for (int k = 0; k < s.count; ++k) {
+    s.r3[k] = rodrigues_place(k, s.count);
+    add_layer(places, n, s.r3[k]);
+  }
+  s.density = odf.at(places, threads);
+  return s;
+}
+
+RodriguesSections sections_of(const RodriguesGrid& grid) {
+  RodriguesSections s;
+  s.n = grid.n;
+  const long layer = static_cast<long>(grid.n) * grid.n;
+  for (int section = 0; section < s.count; ++section) {
+    const long k = std::lround((grid.n - 1) * section / (s.count - 1.0));
+    s.r3[section] = grid.place(static_cast<int>(k));
+    s.density.insert(s.density.end(), grid.density.begin() + k * layer,
+                     grid.density.begin() + (k + 1) * layer);
+  }
+  return s;
 }
 
 DiscGrid disc_grid(const PoleFigure& figure, int n, int threads) {
@@ -145,20 +179,19 @@ std::vector<MapPanel> bunge_panels(const BungeGrid& grid) {
   return panels;
 }
 
-std::vector<MapPanel> rodrigues_panels(const RodriguesGrid& grid) {
+std::vector<MapPanel> rodrigues_panels(const RodriguesSections& sections) {
   std::vector<MapPanel> panels;
-  constexpr int sections = 7;
-  const double between = edge * 2 / (sections - 1);
-  for (int s = 0; s < sections; ++s) {
-    const int k = static_cast<int>(std::lround((grid.n - 1) * s / (sections - 1.0)));
+  const double between = edge * 2 / (sections.count - 1);
+  const long layer = static_cast<long>(sections.n) * sections.n;
+  for (int s = 0; s < sections.count; ++s) {
     MapPanel p;
-    const double r3 = grid.place(k);
+    const double r3 = sections.r3[s];
     p.title = fmt::format("r3 = {:.3f}", std::abs(r3) < 1e-9 ? 0.0 : r3);
-    p.columns = p.rows = grid.n;
+    p.columns = p.rows = sections.n;
     p.low = {-edge, -edge};
     p.high = {edge, edge};
-    for (int j = 0; j < grid.n; ++j)
-      for (int i = 0; i < grid.n; ++i) p.values.push_back(grid.at(i, j, k));
+    p.values.assign(sections.density.begin() + s * layer,
+                    sections.density.begin() + (s + 1) * layer);
     p.outline = rodrigues_outline(r3);
     for (const char* name : {"copper", "s", "brass"})
       for (const Component& c : rolling_components())

@@ -1,6 +1,7 @@
 #pragma once
 // Densities on grids: for files, and as contoured panels.
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,17 @@ struct RodriguesGrid {
 };
 RodriguesGrid rodrigues_grid(const Odf& odf, int n = 33, int threads = 0);
 
+/// f on seven layers of such a grid, evenly across r3, the outermost among them.
+struct RodriguesSections {
+  static constexpr int count = 7;
+  std::array<double, count> r3{};
+  int n = 0;                    ///< places along r1 and r2, ends included
+  std::vector<double> density;  ///< [section][r2][r1]
+};
+RodriguesSections rodrigues_sections(const Odf& odf, int n = 33, int threads = 0);
+/// The layers of a grid that are nearest.
+RodriguesSections sections_of(const RodriguesGrid& grid);
+
 /// A pole figure on a square grid over the unit disc of the equal-area projection, a little beyond.
 struct DiscGrid {
   static constexpr double reach = 1.05;
@@ -62,7 +74,7 @@ MapPanel pole_figure_panel(const DiscGrid& grid, const std::string& title);
 MapPanel inverse_pole_figure_panel(const TriangleGrid& grid, const std::string& title);
 /// Sections phi2 = 0, 5, ... 90 (of a step of 5), phi1 to the right, Phi downwards.
 std::vector<MapPanel> bunge_panels(const BungeGrid& grid);
-/// Seven sections of the fundamental region across r3, with the components that lie near.
-std::vector<MapPanel> rodrigues_panels(const RodriguesGrid& grid);
+/// Sections of the fundamental region, with the components that lie near.
+std::vector<MapPanel> rodrigues_panels(const RodriguesSections& sections);
 
 }  // namespace polyslip::results::analysis

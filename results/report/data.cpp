@@ -90,7 +90,7 @@ std::string title_of(const std::string& folder) {
 void add_textures(const Sources& sources, ReportData& data) {
   data.texture = texture_of(analysis::analyse_folder(sources.folder, sources.texture));
   data.texture_values = texture_json(data.texture, "texture", data.blocks);
-  data.spreads = spreads_json(data.texture.analysis);
+  data.spreads = spreads_json(data.texture, data.blocks);
   if (sources.taylor.empty()) return;
   const Texture taylor = texture_of(analysis::analyse_folder(sources.taylor, sources.texture));
   data.taylor = {{"title", title_of(sources.taylor)},

@@ -190,6 +190,10 @@ std::vector<std::string> write_textures(const std::string& folder, const Texture
   plot("spread-distribution.svg", analysis::spread_plots(a), "Distribution of in-grain spreads");
   plot("spread-correlation.svg", analysis::correlation_plots(a),
        "In-grain spreads from strain to strain");
+  if (!texture.grains.empty()) put("rotation-paths.svg", analysis::path_svg(a, texture.grains));
+  for (const auto& picture : texture.grains)
+    plot(fmt::format("grain-{}.svg", picture.grain + 1).c_str(), analysis::grain_plots(a, picture),
+         "Orientations of a grain about their mean");
   for (std::size_t i = 0; i < texture.maps.size(); ++i) {
     const auto maps = write_maps(folder, texture.maps[i], a.textures[i].strain);
     names.insert(names.end(), maps.begin(), maps.end());

@@ -14,6 +14,7 @@ namespace {
 constexpr std::array<std::array<int, 3>, 3> pole_families{{{1, 1, 1}, {2, 0, 0}, {2, 2, 0}}};
 constexpr std::array<const char*, 3> pole_names{"111", "200", "220"};
 constexpr std::array<const char*, 3> axis_names{"RD", "TD", "ND"};
+constexpr int rodrigues_places = 25;  // a step of 0.035, two fifths of a half-width of 10 degrees
 
 Sections sections_of(const analysis::Odf& odf, int threads) {
   Sections s;
@@ -69,7 +70,9 @@ StateMaps maps_of(const analysis::Sample& sample, const analysis::AnalysisOption
                                     o.symmetry),
         59, o.threads);
   }
-  maps.sections = sections_of(analysis::Odf(sample, o.half_width, o.symmetry), o.threads);
+  const analysis::Odf odf(sample, o.half_width, o.symmetry);
+  maps.sections = sections_of(odf, o.threads);
+  maps.rodrigues = analysis::rodrigues_sections(odf, rodrigues_places, o.threads);
   return maps;
 }
 
@@ -99,6 +102,10 @@ std::vector<std::string> write_maps(const std::string& folder, const StateMaps& 
       analysis::map_svg(section_panels(maps.sections), 3,
                         "Sections of the ODF across phi2 at strain " + at),
       section_csv(maps.sections));
+  put("odf-rodrigues-",
+      analysis::map_svg(analysis::rodrigues_panels(maps.rodrigues), 4,
+                        "Sections of the ODF in Rodrigues space at strain " + at),
+      analysis::rodrigues_csv(maps.rodrigues));
   return names;
 }
 

@@ -22,12 +22,13 @@ struct StateMaps {
   std::array<analysis::DiscGrid, 3> poles;        ///< {111}, {200}, {220}
   std::array<analysis::TriangleGrid, 3> inverse;  ///< RD, TD, ND
   Sections sections;
+  analysis::RodriguesSections rodrigues;
 };
 
 StateMaps maps_of(const analysis::Sample& sample, const analysis::AnalysisOptions& options);
 
-/// Writes pole-figures-<strain>, inverse-pole-figures-<strain> and odf-sections-<strain>, each .svg
-/// and .csv, and returns the names.
+/// Writes pole-figures-<strain>, inverse-pole-figures-<strain>, odf-sections-<strain> and
+/// odf-rodrigues-<strain>, each .svg and .csv, and returns the names.
 std::vector<std::string> write_maps(const std::string& folder, const StateMaps& maps,
                                     double strain);
 

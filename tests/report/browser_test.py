@@ -8,6 +8,7 @@ What the page shows is held against what the run left: macro.csv, summary.json, 
 import csv
 import json
 import math
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -107,16 +108,24 @@ class Browser:
         })()""")
 
 
+def program(*arguments):
+    subprocess.run([polyslip, *arguments], check=True, stdout=subprocess.DEVNULL)
+
+
+def setUpModule():
+    """One run for all tests: FOLDER/small, of FOLDER/small.toml."""
+    global FOLDER
+    folder = tempfile.TemporaryDirectory()
+    unittest.addModuleCleanup(folder.cleanup)
+    FOLDER = Path(folder.name)
+    (FOLDER / "small.toml").write_text(DECK)
+    program("run", FOLDER / "small.toml", "--out", FOLDER / "small")
+
+
 class Report(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.run_folder = Path(folder.name) / "small"
-        deck = Path(folder.name) / "small.toml"
-        deck.write_text(DECK)
-        subprocess.run([polyslip, "run", deck, "--out", cls.run_folder], check=True,
-                       stdout=subprocess.DEVNULL)
+        cls.run_folder = FOLDER / "small"
         cls.summary = json.loads((cls.run_folder / "summary.json").read_text())
         cls.macro = numbers(cls.run_folder / "macro.csv")
         cls.index = json.loads((cls.run_folder / "results/index.json").read_text())["states"]
@@ -126,8 +135,7 @@ class Report(unittest.TestCase):
 
     def elements_at(self, strain):
         table = self.run_folder / "state.csv"
-        subprocess.run([polyslip, "convert", self.run_folder, "--at-strain", str(strain), "--to", table],
-                       check=True, stdout=subprocess.DEVNULL)
+        program("convert", self.run_folder, "--at-strain", str(strain), "--to", table)
         return numbers(table)
 
     def go_to(self, state):
@@ -169,7 +177,7 @@ class Report(unittest.TestCase):
 
     def test_texture_is_that_of_polyslip_analyse(self):
         to = self.run_folder.parent / "analysis"
-        subprocess.run([polyslip, "analyse", self.run_folder, "--to", to], check=True, stdout=subprocess.DEVNULL)
+        program("analyse", self.run_folder, "--to", to)
         with open(to / "texture.csv") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual(len({row["strain"] for row in rows}), 4)
@@ -200,12 +208,61 @@ class Report(unittest.TestCase):
         r = self.browser.ask("document.querySelector('#spread-correlation .plot').layout.annotations[0].text")
         self.assertEqual(r, f"r = {rows[-1]['correlation']:.3g}")
 
+    def test_counts_only_grains_of_one_mode_when_asked(self):
+        to = self.run_folder.parent / "one-mode"
+        program("analyse", self.run_folder, "--one-mode", "--to", to)
+        rows = numbers(to / "analysis/spread-summary.csv")
+        self.assertLess(rows[-1]["grains"], 8)
+        mean = "(({ x, y }) => ({ x, y }))(document.querySelector('#grain-spreads .plot').data.at(-1))"
+        before = self.browser.ask(mean)
+        choose = ("const e = document.querySelector('#grain-spreads select'); e.value = [...e.options].findIndex("
+                  "(o) => o.text === arguments[0]); e.dispatchEvent(new Event('input', { bubbles: true }))")
+        self.browser.driver.execute_script(choose, "of one mode")
+        self.browser.wait(f"document.querySelector('#grain-spreads .plot').data.at(-1).y.at(-1) !== {before['y'][-1]!r}")
+        for shown, row in zip(self.browser.ask(mean)["y"], rows):
+            self.assertAlmostEqual(shown, row["mean"], delta=1e-9)
+        self.browser.driver.execute_script(choose, "all grains")
+        self.browser.wait(f"document.querySelector('#grain-spreads .plot').data.at(-1).y.at(-1) === {before['y'][-1]!r}")
+
+    def test_rodrigues_sections_are_those_of_their_file(self):
+        rows = numbers(self.run_folder / "figures/odf-rodrigues-0.06.csv")
+        maps = self.browser.ask("document.querySelector('#odf-rodrigues .plot').data.map(({ x, y, z }) => ({ x, y, z }))")
+        self.assertEqual(len(maps), 7)
+        heights = sorted({row["r3"] for row in rows})
+        self.assertEqual(len(heights), 7)
+        for shown, r3 in zip(maps, heights):
+            places = {(round(x, 6), round(y, 6)): z for y, line in zip(shown["y"], shown["z"])
+                      for x, z in zip(shown["x"], line)}
+            section = [row for row in rows if row["r3"] == r3]
+            self.assertGreater(len(section), 100)
+            for row in section:
+                z = places[round(row["r1"], 6), round(row["r2"], 6)]
+                self.assertAlmostEqual(z, row["density"], delta=1e-5 * (1 + z))
+
+    def test_grains_are_drawn(self):
+        rows = [row for row in numbers(self.run_folder / "figures/spreads.csv") if row["strain"] == 0.06]
+        grain = max(rows, key=lambda row: row["volume"])
+        maps, lines = self.browser.ask(
+            "[['contour'], ['scatter']].map(([type]) => document.querySelector('#rotation-paths .plot').data"
+            ".filter((trace) => (trace.type ?? 'scatter') === type).length)")
+        self.assertEqual(maps, 2)
+        self.assertGreaterEqual(lines, 16)  # four axes of two grains, each with a dot
+        title = self.browser.ask("document.querySelector('#rotation-paths .plot').layout.annotations[0].text")
+        self.assertIn(f"grain {grain['grain']:.0f}: ", title)
+        shown = self.browser.ask("(({ x, y }) => ({ x, y }))(document.querySelector('#grain-orientations .plot').data[0])")
+        z = self.browser.ask("document.querySelector('#grain-orientations .plot').data[1].y")
+        angles = [math.sqrt(a * a + b * b + c * c) for a, b, c in zip(shown["x"], shown["y"], z)]
+        self.assertEqual(len(angles), grain["elements"])
+        self.assertAlmostEqual(max(angles), grain["largest"], delta=1e-5)
+
     def test_figures_are_files_too(self):
         names = {path.name for path in (self.run_folder / "figures").iterdir()}
         for stem in ("stress-strain", "steps", "means", "mesh-quality", "beta-fibre", "pole-figures-0.06",
-                     "inverse-pole-figures-0.06", "odf-sections-0.06"):
+                     "inverse-pole-figures-0.06", "odf-sections-0.06", "odf-rodrigues-0.06"):
             for extension in (".svg", ".csv"):
                 self.assertIn(stem + extension, names)
+        self.assertIn("rotation-paths.svg", names)
+        self.assertEqual(len([name for name in names if name.startswith("grain-")]), 2)
         rows = numbers(self.run_folder / "figures/stress-strain.csv")
         self.assertEqual([row["strain"] for row in rows], [row["strain"] for row in self.macro])
 
@@ -301,6 +358,66 @@ class Report(unittest.TestCase):
 
     def test_zz_asked_nothing_of_the_network_and_left_the_console_clean(self):
         self.assertEqual(self.browser.ask("performance.getEntriesByType('resource').length"), 0)
+        self.assertEqual(self.browser.console(), [])
+
+
+class ReportBesideTaylor(unittest.TestCase):
+    """The same run with the Taylor model of its deck."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.taylor = FOLDER / "taylor"
+        program("taylor", FOLDER / "small.toml", "--out", cls.taylor)
+        program("analyse", cls.taylor)
+        cls.run_folder = FOLDER / "beside"
+        shutil.copytree(FOLDER / "small", cls.run_folder, ignore=shutil.ignore_patterns("report.html", "figures"))
+        program("report", cls.run_folder, "--taylor", cls.taylor)
+        cls.browser = Browser(cls.run_folder / "report.html", NO_GL)
+        cls.addClassCleanup(cls.browser.close)
+
+    def test_components_are_those_of_both(self):
+        with open(self.taylor / "texture.csv") as file:
+            rows = list(csv.DictReader(file))
+        lines = self.browser.ask("document.querySelector('#components-intensity .plot').data"
+                                 ".map(({ legendgroup, line, x, y }) => [legendgroup, line.dash, x, y])")
+        dashed = [line for line in lines if line[1] == "dash"]
+        self.assertEqual(2 * len(dashed), len(lines))
+        for name, _, strains, intensities in dashed:
+            expected = [row for row in rows if row["component"] == name]
+            self.assertGreater(len(expected), 2)
+            self.assertEqual(strains, [float(row["strain"]) for row in expected])
+            for shown, row in zip(intensities, expected):
+                self.assertAlmostEqual(shown, float(row["intensity"]), delta=1e-9)
+        mine = next(line[3] for line in lines if line[:2] == [dashed[0][0], "solid"])
+        self.assertNotAlmostEqual(mine[-1], dashed[0][3][-1], delta=1e-3)
+
+    def test_maps_stand_below_those_of_the_run(self):
+        for name, count in (("pole-figures", 3), ("inverse-pole-figures", 3), ("odf-sections", 3), ("odf-rodrigues", 7)):
+            titles = self.browser.ask(f"document.querySelector('#{name} .plot').layout.annotations.map((a) => a.text)")
+            for whose in ("run", "Taylor"):
+                self.assertEqual(sum(f", {whose}, strain 0.06" in title for title in titles), count, name)
+            maps = self.browser.ask(f"document.querySelector('#{name} .plot').data.filter((d) => d.type === 'contour').length")
+            self.assertEqual(maps, 2 * count)
+        with open(self.taylor / "analysis/pole-figures-0.06.csv") as file:
+            poles = [row for row in csv.DictReader(file) if row["figure"] == "111"]
+        shown = self.browser.ask("(({ x, y, z }) => ({ x, y, z }))(document.querySelector('#pole-figures .plot').data[3])")
+        places = {(round(x, 9), round(y, 9)): z for y, row in zip(shown["y"], shown["z"])
+                  for x, z in zip(shown["x"], row)}
+        for row in poles:
+            z = places[round(float(row["x"]), 9), round(float(row["y"]), 9)]
+            self.assertAlmostEqual(z, float(row["density"]), delta=1e-5 * (1 + z))
+
+    def test_curves_index_and_fibre_have_both(self):
+        stress = numbers(self.taylor / "macro.csv")
+        lines = self.browser.ask("document.querySelector('#stress-strain .plot').data.map(({ name, y }) => [name, y])")
+        taylor = [y for name, y in lines if "Taylor" in name]
+        self.assertEqual(taylor[0], [row["load_stress"] for row in stress])
+        self.assertAlmostEqual(taylor[1][-1], von_mises(stress[-1]), places=9)
+        self.assertEqual(self.browser.ask("document.querySelector('#texture-index .plot').data.map((d) => d.name)"),
+                         ["run", "Taylor"])
+        self.assertEqual(self.browser.ask("document.querySelector('#beta-fibre .plot').data.length"), 4)
+
+    def test_zz_console_is_clean(self):
         self.assertEqual(self.browser.console(), [])
 
 

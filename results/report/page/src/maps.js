@@ -45,13 +45,25 @@ const note = (axis, [x, y, text, xanchor = 'center', yanchor = 'middle'], size) 
   font: { size },
 });
 
+/** A line along the points, and a dot on the first. */
+function pathTraces(points, axis) {
+  const on = { xaxis: `x${axis}`, yaxis: `y${axis}`, hoverinfo: 'skip', showlegend: false };
+  const [x, y] = [0, 1].map((i) => points.map((p) => p[i]));
+  return [
+    { ...on, x, y, mode: 'lines', line: { color: colour('c1'), width: 2 } },
+    { ...on, x: x.slice(0, 1), y: y.slice(0, 1), mode: 'markers', marker: { color: colour('c1'), size: 8 } },
+  ];
+}
+
 /**
  * Each panel: `title`; `x` and `y`, [from, to] of the grid; `z`, its rows; `outline`, a polygon, or
- * none; `view`, the { x, y } to show; `notes`, [x, y, text, anchors]; `axes`, layouts of both axes, or none. `rows` of panels.
+ * none; `view`, the { x, y } to show; `notes`, [x, y, text, anchors]; `axes`, layouts of both axes, or
+ * none; `paths`, lists of [x, y], drawn with a dot where they begin. A panel may be null: its place
+ * stays empty. `rows` of panels.
  */
 export function maps(panels, { rows = 1, equal = true }) {
   const columns = Math.ceil(panels.length / rows);
-  const largest = Math.max(...panels.flatMap((p) => p.z.map((row) => Math.max(...row))), 1);
+  const largest = Math.max(...panels.flatMap((p) => (p ? p.z.map((row) => Math.max(...row)) : [])), 1);
   const size = levelStep(largest);
   const layout = {
     shapes: [],
@@ -69,11 +81,12 @@ export function maps(panels, { rows = 1, equal = true }) {
     },
     margin: { l: 10, r: 10, t: 26, b: 12 },
   };
-  const data = panels.map((panel, k) => {
+  const data = panels.flatMap((panel, k) => {
+    if (!panel) return [];
     const axis = k === 0 ? '' : String(k + 1);
     const column = k % columns;
     const row = Math.floor(k / columns);
-    const { title, x, y, z, outline, view, notes = [], axes = {} } = panel;
+    const { title, x, y, z, outline, view, notes = [], axes = {}, paths = [] } = panel;
     const hidden = { visible: false };
     layout[`xaxis${axis}`] = {
       ...(axes.x ?? hidden),
@@ -101,7 +114,7 @@ export function maps(panels, { rows = 1, equal = true }) {
     );
     const place = ([from, to], count) =>
       Array.from({ length: count }, (_, i) => from + ((to - from) * i) / (count - 1));
-    return {
+    const map = {
       type: 'contour',
       x: place(x, z[0].length),
       y: place(y, z.length),
@@ -113,6 +126,7 @@ export function maps(panels, { rows = 1, equal = true }) {
       line: { width: 0.7, color: 'rgba(0,0,0,0.35)' },
       hovertemplate: '%{z:.2f} × random<extra></extra>',
     };
+    return [map, ...paths.flatMap((points) => pathTraces(points, axis))];
   });
   return { data, layout };
 }

@@ -77,7 +77,18 @@ TEST(TextureMaps, GridsHoldTheDensityWhereTheySay) {
   const RodriguesGrid r = rodrigues_grid(odf, 13);
   EXPECT_NEAR(r.at(2, 7, 12), odf.at(core::from_rodrigues({r.place(2), r.place(7), r.place(12)})),
               1e-12);
-  EXPECT_EQ(rodrigues_panels(r).size(), 7u);
+  // Of 13 places along r3 every other one is a layer of the sections.
+  const RodriguesSections layers = rodrigues_sections(odf, 13), nearest = sections_of(r);
+  ASSERT_EQ(layers.density.size(), 7u * 13 * 13);
+  ASSERT_EQ(nearest.density.size(), layers.density.size());
+  for (int s = 0; s < layers.count; ++s) {
+    EXPECT_NEAR(layers.r3[s], r.place(2 * s), 1e-12);
+    EXPECT_EQ(nearest.r3[s], r.place(2 * s));
+    for (const std::size_t at : {std::size_t{0}, std::size_t{100}, std::size_t{168}})
+      EXPECT_NEAR(layers.density[s * 169 + at], nearest.density[s * 169 + at], 1e-9);
+  }
+  EXPECT_NEAR(nearest.density[3 * 169 + 7 * 13 + 2], r.at(2, 7, 6), 0);
+  EXPECT_EQ(rodrigues_panels(layers).size(), 7u);
   const PoleFigure figure(sample, {1, 1, 1}, 0.2);
   const DiscGrid disc = disc_grid(figure, 21);
   EXPECT_NEAR(disc.density[10 * 21 + 10], figure.at({0, 0, 1}), 1e-12);

@@ -9,7 +9,7 @@ function rows(values, columns) {
   ]);
 }
 
-async function read(name, { disc, triangle, sections }) {
+async function read(name, { disc, triangle, sections, rodrigues }) {
   const all = new Float32Array(await block(name));
   let at = 0;
   const next = (count) => all.subarray(at, (at += count));
@@ -17,10 +17,11 @@ async function read(name, { disc, triangle, sections }) {
     poles: [0, 1, 2].map(() => rows(next(disc.n * disc.n), disc.n)),
     inverse: [0, 1, 2].map(() => rows(next(triangle.nx * triangle.ny), triangle.nx)),
     sections: sections.phi2.map(() => rows(next(sections.n1 * sections.n), sections.n1)),
+    rodrigues: rodrigues.r3.map(() => rows(next(rodrigues.n * rodrigues.n), rodrigues.n)),
   };
 }
 
-/** { poles, inverse, sections } of a state of a texture. */
+/** { poles, inverse, sections, rodrigues } of a state of a texture. */
 export function densities(texture, state) {
   if (!kept.has(state.block)) kept.set(state.block, read(state.block, texture.grids));
   return kept.get(state.block);
@@ -31,8 +32,8 @@ const circle = Array.from({ length: 121 }, (_, i) => [
   Math.sin((i * Math.PI) / 60),
 ]);
 
-export function poleFigure(texture, z, title) {
-  const { reach } = texture.grids.disc;
+/** Of a grid over the disc, { n, reach }. */
+export function disc({ reach }, z, title) {
   return {
     title,
     z,
@@ -44,6 +45,29 @@ export function poleFigure(texture, z, title) {
       [1.03, 0, 'RD', 'left'],
       [0, 1.03, 'TD', 'center', 'bottom'],
     ],
+  };
+}
+
+export const poleFigure = (texture, z, title) => disc(texture.grids.disc, z, title);
+
+/** The densities' { z } of a grain's pole figure, and its deviations [x, y, z] in degrees. */
+export async function grainBlock({ block: name, disc: { n }, elements }) {
+  const all = new Float32Array(await block(name));
+  return { z: rows(all.subarray(0, n * n), n), deviations: rows(all.subarray(n * n, n * n + 3 * elements), 3) };
+}
+
+/** The layer `index` of the fundamental region of Rodrigues space. */
+export function rodriguesSection(texture, z, index) {
+  const { r3, reach, outlines, marks } = texture.grids.rodrigues;
+  const view = [-1.12 * reach, 1.12 * reach];
+  return {
+    title: `r₃ = ${r3[index].toFixed(3).replace('-', '−')}`,
+    z,
+    x: [-reach, reach],
+    y: [-reach, reach],
+    outline: outlines[index],
+    view: { x: view, y: view },
+    notes: marks[index].map(([x, y, text]) => [x, y, `<b>${text}</b>`]),
   };
 }
 

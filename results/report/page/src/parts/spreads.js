@@ -3,27 +3,30 @@ import { h } from '../dom.js';
 import { figure } from '../figure.js';
 import { number } from '../format.js';
 import { section } from '../section.js';
+import { grainChoice } from './grain_choice.js';
+import { orientations, paths } from './grains.js';
 import { colour } from '../theme.js';
 
-const deformed = (spreads) => spreads.states.filter((s) => s.mean > 1e-6);
+const deformed = (states) => states.filter((s) => s.mean > 1e-6);
 
 function means(spreads) {
-  const { states } = spreads;
-  const column = (key) => states.map((s) => s[key]);
+  const { control, chosen } = grainChoice(spreads);
+  const column = (key) => chosen().map((s) => s[key]);
   return figure({
     name: 'grain-spreads',
+    control,
     title: 'In-grain spread against strain',
     caption:
       'Of a grain: the mean disorientation of its elements from its mean orientation, by volume. Boxes: ' +
       'quartiles of the grains; line: mean of the grains.',
     draw: () => ({
       data: [
-        ...deformed(spreads).map((s) => ({
+        ...deformed(chosen()).map((s) => ({
           type: 'box',
           y: s.spread,
           x: s.spread.map(() => s.strain),
           name: `strain ${number(s.strain)}`,
-          width: 0.03 * states.at(-1).strain,
+          width: 0.03 * spreads.states.at(-1).strain,
           marker: { size: 3, color: colour('c5') },
           line: { width: 1.3 },
           boxpoints: 'outliers',
@@ -61,13 +64,15 @@ function density(values) {
 
 /** Densities of the grains' spreads, each over the mean of its state (fig. 20). */
 function distribution(spreads) {
-  const states = deformed(spreads);
+  const { control, chosen } = grainChoice(spreads);
+  const states = () => deformed(chosen());
   return figure({
     name: 'spread-distribution',
+    control,
     title: 'Distribution of the spreads',
-    caption: 'Share of the grains by their spread, divided by the mean of all grains at that strain.',
+    caption: 'Share of the grains by their spread, divided by their mean at that strain.',
     draw: () => ({
-      data: states.map((s) => ({
+      data: states().map((s) => ({
         ...density(s.spread.map((angle) => angle / s.mean)),
         name: `strain ${number(s.strain)}, mean ${number(s.mean)}°`,
         mode: 'lines',
@@ -80,17 +85,18 @@ function distribution(spreads) {
       },
     }),
     columns: () => ({
-      grain: states[0].spread.map((_, g) => g + 1),
-      ...Object.fromEntries(states.map((s) => [`spread at strain ${number(s.strain)}`, s.spread])),
+      grain: states()[0].grain,
+      ...Object.fromEntries(states().map((s) => [`spread at strain ${number(s.strain)}`, s.spread])),
     }),
   });
 }
 
 /** A point a grain: its spread at one strain against that at the strain before. */
 function correlations(spreads) {
-  const states = deformed(spreads);
+  const states = deformed(spreads.states);
   if (states.length < 2) return null;
-  const control = h(
+  const { control: grains, chosen } = grainChoice(spreads);
+  const strains = h(
     'select',
     { 'aria-label': 'pair of strains' },
     ...states
@@ -103,7 +109,8 @@ function correlations(spreads) {
         ),
       ),
   );
-  const pair = () => [states[Number(control.value) - 1], states[Number(control.value)]];
+  const pair = () => deformed(chosen()).slice(Number(strains.value) - 1, Number(strains.value) + 1);
+  const control = h('span', {}, grains, strains);
   return figure({
     name: 'spread-correlation',
     title: 'Spreads from strain to strain',
@@ -116,7 +123,7 @@ function correlations(spreads) {
           {
             x: before.spread,
             y: after.spread,
-            text: before.spread.map((_, g) => `grain ${g + 1}`),
+            text: before.grain.map((g) => `grain ${g}`),
             mode: 'markers',
             marker: { size: 7, opacity: 0.75 },
             hovertemplate: '%{text}: %{x:.2f}° → %{y:.2f}°<extra></extra>',
@@ -141,13 +148,13 @@ function correlations(spreads) {
     },
     columns: () => {
       const [before, after] = pair();
-      return { grain: before.spread.map((_, g) => g + 1), before: before.spread, after: after.spread };
+      return { grain: before.grain, before: before.spread, after: after.spread };
     },
   });
 }
 
 function rotations(spreads) {
-  const states = deformed(spreads);
+  const states = deformed(spreads.states);
   return figure({
     name: 'grain-rotations',
     title: 'Rotation of the grains',
@@ -174,7 +181,7 @@ function rotations(spreads) {
 }
 
 export function spreads(report) {
-  if (!report.spreads || deformed(report.spreads).length === 0) return null;
+  if (!report.spreads || deformed(report.spreads.states).length === 0) return null;
   const { states } = report.spreads;
   return section(
     'microtexture',
@@ -186,6 +193,8 @@ export function spreads(report) {
       distribution(report.spreads),
       correlations(report.spreads),
       rotations(report.spreads),
+      paths(report.spreads),
+      orientations(report.spreads),
     ].filter(Boolean),
   );
 }

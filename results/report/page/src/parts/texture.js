@@ -5,7 +5,7 @@ import { count, number } from '../format.js';
 import { maps } from '../maps.js';
 import { section as part } from '../section.js';
 import { colour } from '../theme.js';
-import { densities, inversePoleFigure, poleFigure, section } from './densities.js';
+import { densities, inversePoleFigure, poleFigure, rodriguesSection, section } from './densities.js';
 
 const labels = { goss: 'Goss', s: 'S', dillamore: '{4 4 11}' };
 const label = (name) => labels[name] ?? name[0].toUpperCase() + name.slice(1);
@@ -37,18 +37,21 @@ function beside(report, index) {
   return shown;
 }
 
-/** Maps of one kind at a chosen state: three of the run, and below three of the Taylor model. */
-function mapsFigure(report, { name, title, caption, height, panels, equal = true }) {
+/** Maps of one kind at a chosen state: those of the run in so many `lines`, and below the Taylor model's. */
+function mapsFigure(report, { name, title, caption, height, panels, equal = true, lines = 1 }) {
   const control = choiceOfState(report.texture);
   const shown = () => beside(report, Number(control.value));
-  const rows = report.taylor ? 2 : 1;
+  const rows = (report.taylor ? 2 : 1) * lines;
+  const filled = (list) => [...list, ...Array(Math.ceil(list.length / lines) * lines - list.length).fill(null)];
   const suffix = (what, state) => (report.taylor ? `, ${what}, strain ${number(state.strain)}` : '');
   const all = async () => {
     const rowsOfPanels = shown().map(async ([what, texture, state]) =>
-      panels(texture, await densities(texture, state)).map((p) => ({
-        ...p,
-        title: p.title + suffix(what, state),
-      })),
+      filled(
+        panels(texture, await densities(texture, state)).map((p) => ({
+          ...p,
+          title: p.title + suffix(what, state),
+        })),
+      ),
     );
     return (await Promise.all(rowsOfPanels)).flat();
   };
@@ -62,7 +65,7 @@ function mapsFigure(report, { name, title, caption, height, panels, equal = true
     draw: async () => maps(await all(), { rows, equal }),
     columns: async () => {
       const table = { map: [], x: [], y: [], density: [] };
-      for (const p of await all())
+      for (const p of (await all()).filter(Boolean))
         p.z.forEach((row, j) =>
           row.forEach((density, i) => {
             table.map.push(`"${p.title}"`);
@@ -107,6 +110,19 @@ function sections(report) {
     equal: false,
     panels: (texture, d) =>
       texture.grids.sections.phi2.map((phi2, i) => section(texture, d.sections[i], `φ₂ = ${phi2}°`)),
+  });
+}
+
+function rodriguesSections(report) {
+  return mapsFigure(report, {
+    name: 'odf-rodrigues',
+    title: 'Sections in Rodrigues space',
+    caption:
+      'The fundamental region across r₃; r₁ to the right, r₂ up. C: copper, S, B: brass, where a variant ' +
+      'lies near the section.',
+    height: 260,
+    lines: 2,
+    panels: (texture, d) => d.rodrigues.map((z, i) => rodriguesSection(texture, z, i)),
   });
 }
 
@@ -243,5 +259,6 @@ export function texture(report) {
     betaFibre(report),
     index(report),
     sections(report),
+    rodriguesSections(report),
   );
 }
