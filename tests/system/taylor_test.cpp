@@ -91,13 +91,15 @@ struct Crystal {
 };
 
 // Plane strain: the rate-independent limits are good to four digits at m = 0.02. In {001}<100> and
-// {011}<100> rolled along <100> four systems or more share the slip.
+// {011}<100> rolled along <100> four systems or more share the slip. S: the largest work over the
+// 56 stress states of Bishop and Hill, and the minimum of the power law's potential at m = 0.12.
 TEST(Taylor, SlipOfSingleCrystals) {
   const double root = std::sqrt(6.0);
   const Crystal crystals[] = {{"cube", {0, 0, 1}, {1, 0, 0}, root, 2.4571},
                               {"goss", {0, 1, 1}, {1, 0, 0}, root, root},
                               {"brass", {0, 1, 1}, {2, -1, 1}, 4 * root / 3, 3.2739},
                               {"copper", {1, 1, 2}, {-1, -1, 1}, 3 * root / 2, 3.6831},
+                              {"S", {1, 2, 3}, {6, 3, -4}, 3.4864, 3.4866},
                               {"D", {4, 4, 11}, {11, 11, -8}, 3.530, 3.5367},
                               {"{011}<01-1>", {0, 1, 1}, {0, 1, -1}, 2 * root, 2 * root}};
   for (const Crystal& crystal : crystals)
