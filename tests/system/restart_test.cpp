@@ -182,6 +182,21 @@ TEST(Restart, KeepsTwelveUnequalStrengths) {
             *std::min_element(g->values.begin(), g->values.begin() + 12) + 1e-3);
 }
 
+/// Stresses that cross a remeshing start its first step, before and after the kill.
+TEST(Restart, WithCarriedStressesEndsTheSame) {
+  Sandbox sandbox;
+  std::string deck = small_deck();
+  const auto at = deck.find("[remeshing]\n");
+  ASSERT_NE(at, std::string::npos);
+  deck.insert(at + 12, "stress = \"carried\"\n");
+  kill_once(sandbox, deck);
+  ASSERT_FALSE(::testing::Test::HasFailure());
+  for (const auto& row : read_macro(sandbox.path() / "killed"))
+    if (row.remeshed) {
+      EXPECT_GT(row.von_mises(), 0.8 * stress_at(read_macro(sandbox.path() / "killed"), 0.03));
+    }
+}
+
 /// What a kill can leave: rows, states and meshes beyond the checkpoint, torn lines, parts of
 /// files.
 TEST(Restart, TrimsWhatIsLaterThanItsCheckpoint) {
