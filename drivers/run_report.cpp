@@ -27,6 +27,28 @@ double seconds_of(const CpuSeconds& times, const std::string& stage) {
   return 0;
 }
 
+/// Of a grain on one side of a remeshing; two columns of the table.
+struct GrainColumn {
+  const char* name;
+  double (*of)(const remap::GrainStatistics&);
+};
+
+/// The volume, after which the rotation stands, and the rest.
+const std::pair<GrainColumn, std::vector<GrainColumn>>& grain_columns() {
+  using Grain = const remap::GrainStatistics&;
+  static const std::pair<GrainColumn, std::vector<GrainColumn>> columns{
+      {"volume", [](Grain g) { return g.volume; }},
+      {{"spread", [](Grain g) { return g.spread; }},
+       {"g", [](Grain g) { return g.g.mean; }},
+       {"g_min", [](Grain g) { return g.g.min; }},
+       {"g_max", [](Grain g) { return g.g.max; }},
+       {"slip", [](Grain g) { return g.slip.mean; }},
+       {"slip_min", [](Grain g) { return g.slip.min; }},
+       {"slip_max", [](Grain g) { return g.slip.max; }},
+       {"elastic_energy", [](Grain g) { return g.elastic_energy; }}}};
+  return columns;
+}
+
 }  // namespace
 
 std::string step_text(const solver::StepRecord& step, double seconds_left) {
@@ -77,19 +99,21 @@ results::RemeshingSummary remeshing_summary(const remap::RemeshReport& r) {
 }
 
 std::string remeshing_table(const remap::RemeshReport& r) {
-  std::string table =
-      "grain,volume_before,volume_after,rotation,spread_before,spread_after,g_before,g_after,"
-      "g_min_before,g_min_after,g_max_before,g_max_after,slip_before,slip_after,slip_min_before,"
-      "slip_min_after,slip_max_before,slip_max_after,elastic_energy_before,elastic_energy_after\n";
+  std::string table = "grain";
+  const auto add_header = [&](const GrainColumn& c) {
+    table += fmt::format(",{0}_before,{0}_after", c.name);
+  };
+  const auto& [volume, others] = grain_columns();
+  add_header(volume);
+  table += ",rotation";
+  for (const auto& column : others) add_header(column);
   for (std::size_t i = 0; i < r.grains_before.size(); ++i) {
     const remap::GrainStatistics &a = r.grains_before[i], &b = r.grains_after[i];
     const double rotation = a.orientation.angularDistance(b.orientation) * core::degrees_per_radian;
-    table += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", i + 1,
-                         a.volume, b.volume, rotation, a.spread, b.spread, a.g.mean, b.g.mean,
-                         a.g.min, b.g.min, a.g.max, b.g.max, a.slip.mean, b.slip.mean, a.slip.min,
-                         b.slip.min, a.slip.max, b.slip.max, a.elastic_energy, b.elastic_energy);
+    table += fmt::format("\n{},{},{},{}", i + 1, volume.of(a), volume.of(b), rotation);
+    for (const auto& column : others) table += fmt::format(",{},{}", column.of(a), column.of(b));
   }
-  return table;
+  return table + "\n";
 }
 
 CpuSeconds total_times(const CpuSeconds& earlier, const core::StageTimes& times) {

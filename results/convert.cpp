@@ -73,10 +73,7 @@ StateRecord convert(const std::string& run_folder, double strain, const std::str
                     ElementValue value, bool overwrite) {
   if (!std::isfinite(strain))
     throw core::InputError(fmt::format("strain {}: give a finite number", strain));
-  const StateSeries series(run_folder);
-  if (series.states().empty())
-    throw core::InputError(run_folder +
-                           ": holds no stored state; give the folder of a run that has begun");
+  const StateSeries series = begun_series(run_folder);
   const StateRecord state = nearest_state(series, strain);
   check_target(csv, overwrite);
   if (series.without_mesh()) {

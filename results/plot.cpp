@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/file.hpp"
 #include "results/plot_axis.hpp"
+#include "results/svg.hpp"
 
 namespace polyslip::results {
 namespace {
@@ -53,21 +54,6 @@ text{fill:#e6edf3}.small{fill:#9ea7b3}.ground{fill:#0d1117}.grid{stroke:#262c36}
 }
 </style>
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 /// Letters of an UTF-8 text.
 double letters(const std::string& text) {
@@ -141,7 +127,7 @@ class Panel {
         top_(top + title_height + legend_height),
         bottom_(top_ + frame_height) {
     add("<text class=\"title\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + 14, top + 20,
-        escaped(plot.title));
+        svg_escaped(plot.title));
     legend(left + 14, top + title_height);
     axes();
     for (std::size_t i = 0; i < plot.series.size(); ++i)
@@ -195,7 +181,7 @@ class Panel {
       first = false;
       swatch(s.mark, colour % colours, left + x, y + 8);
       add("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left + x + 23, y + 12,
-          escaped(s.label));
+          svg_escaped(s.label));
       x += width;
     }
   }
@@ -243,11 +229,11 @@ class Panel {
     add("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>\n", left_, top_, bottom_,
         right_);
     add("<text text-anchor=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", (left_ + right_) / 2,
-        bottom_ + 38, escaped(plot_.x.label));
+        bottom_ + 38, svg_escaped(plot_.x.label));
     const double x = left_ - margin_left + 16, y = (top_ + bottom_) / 2;
     add("<text text-anchor=\"middle\" transform=\"translate({:.1f} {:.1f}) rotate(-90)\">{}"
         "</text>\n",
-        x, y, escaped(plot_.y.label));
+        x, y, svg_escaped(plot_.y.label));
   }
 
   void draw(const Series& s, int c) {
@@ -361,7 +347,7 @@ std::string svg_text(const std::vector<Plot>& panels, const std::string& caption
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
       "height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n{3}"
       "<rect class=\"ground\" width=\"{0:.0f}\" height=\"{1:.0f}\"/>\n{4}</svg>\n",
-      width, top, escaped(caption), style, body);
+      width, top, svg_escaped(caption), style, body);
 }
 
 void write_svg(const std::string& path, const std::vector<Plot>& panels,

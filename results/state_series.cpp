@@ -137,6 +137,14 @@ void StateSeries::trim_after(double strain) {
   keep_first(count);
 }
 
+StateSeries begun_series(const std::string& run_folder) {
+  StateSeries series(run_folder);
+  if (series.states().empty())
+    throw core::InputError(run_folder +
+                           ": holds no stored state; give the folder of a run that has begun");
+  return series;
+}
+
 const StateRecord& nearest_state(const StateSeries& series, double strain) {
   const StateRecord* nearest = nullptr;
   for (const auto& state : series.states())

@@ -43,6 +43,9 @@ class StateSeries {
   std::vector<StateRecord> states_;
 };
 
+/// The states of a run that has stored some; InputError, which names the folder, if there is none.
+StateSeries begun_series(const std::string& run_folder);
+
 /// The state nearest in strain; of two at the same strain (both sides of a remeshing) the first.
 /// InputError if the run has none.
 const StateRecord& nearest_state(const StateSeries& series, double strain);

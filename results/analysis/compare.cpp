@@ -21,11 +21,7 @@ const std::string table_name = "compare.csv";
 
 std::vector<double> stored_strains(const std::string& folder) {
   std::vector<double> strains;
-  const StateSeries series(folder);
-  if (series.states().empty())
-    throw core::InputError(folder +
-                           ": holds no stored state; give the folder of a run that has begun");
-  for (const auto& state : chosen_states(series, {})) strains.push_back(state.strain);
+  for (const auto& state : chosen_states(begun_series(folder), {})) strains.push_back(state.strain);
   return strains;
 }
 

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/error.hpp"
+#include "results/svg.hpp"
 
 namespace polyslip::results::analysis {
 namespace {
@@ -40,21 +41,6 @@ constexpr std::array<std::array<double, 3>, 9> viridis{{{68, 1, 84},
                                                         {170, 220, 50},
                                                         {253, 231, 37}}};
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '&')
-      out += "&amp;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 /// One panel, drawn into a frame whose upper left corner is (left, top).
 class Drawing {
  public:
@@ -71,7 +57,7 @@ class Drawing {
 
   std::string text(const std::vector<double>& levels) {
     add("<text class=\"t\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left_ + panel_width / 2,
-        top_ - 8, escaped(p_.title));
+        top_ - 8, svg_escaped(p_.title));
     add("<clipPath id=\"c{}\"><path d=\"{}\"/></clipPath>\n<g clip-path=\"url(#c{})\">\n", number_,
         outline(), number_);
     add("<g shape-rendering=\"crispEdges\">\n<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" "
@@ -92,7 +78,7 @@ class Drawing {
     for (const auto& mark : p_.marks) draw_mark(mark);
     if (!p_.below.empty())
       add("<text class=\"b\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left_ + panel_width / 2,
-          top_ + height(p_) + 15, escaped(p_.below));
+          top_ + height(p_) + 15, svg_escaped(p_.below));
     return text_;
   }
 
@@ -209,7 +195,7 @@ class Drawing {
     add("<circle class=\"mark\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\"/>", s[0], s[1]);
     const bool right = s[0] > left_ + 0.8 * panel_width;
     add("<text class=\"halo\" x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>\n", s[0] + (right ? -5 : 5),
-        s[1] + 4, right ? " text-anchor=\"end\"" : "", escaped(mark.label));
+        s[1] + 4, right ? " text-anchor=\"end\"" : "", svg_escaped(mark.label));
   }
 
   const MapPanel& p_;
@@ -295,7 +281,7 @@ std::string map_svg(const std::vector<MapPanel>& panels, int per_row, const std:
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0f}\" height=\"{:.0f}\" viewBox=\"0 0 "
       "{:.0f} {:.0f}\" role=\"img\">\n<title>{}</title>\n{}<rect class=\"ground\" width=\"100%\" "
       "height=\"100%\"/>\n",
-      width, whole, width, whole, escaped(caption), style);
+      width, whole, width, whole, svg_escaped(caption), style);
   for (int i = 0; i < count; ++i)
     text += Drawing(panels[static_cast<std::size_t>(i)], gap + (i % per_row) * (panel_width + gap),
                     caption_height + title_height + (i / per_row) * row_height, i)

@@ -38,10 +38,7 @@ StateRecord export_orientations(const std::string& run_folder, double strain,
                                 bool overwrite) {
   if (!std::isfinite(strain))
     throw core::InputError(fmt::format("strain {}: give a finite number", strain));
-  const StateSeries series(run_folder);
-  if (series.states().empty())
-    throw core::InputError(run_folder +
-                           ": holds no stored state; give the folder of a run that has begun");
+  const StateSeries series = begun_series(run_folder);
   if (std::filesystem::exists(path) && !overwrite)
     throw core::InputError(path +
                            ": is there; give another name with --to, or replace it with "

@@ -106,6 +106,7 @@ TEST(StateSeries, TrimsByStrain) {
 TEST(StateSeries, NearestState) {
   const RunFolder folder;
   EXPECT_THROW(results::nearest_state(StateSeries(folder.path()), 0.1), core::InputError);
+  EXPECT_THROW(results::begun_series(folder.path()), core::InputError);
   store_four(folder.path());
   const StateSeries series(folder.path());
   EXPECT_EQ(results::nearest_state(series, 0.31).file, "state-0001.h5");
