@@ -138,6 +138,15 @@ mesh::MeshingOptions read_mesh(Deck& deck, InputOptions& input) {
                                   "quality so far. `gmsh-hxt`, `gmsh-delaunay` and `netgen` "
                                   "are followed by our optimiser, the others not: "
                                   "`paper-1` and `paper-2` are those of the paper."});
+  o.face_meshers = t.texts(
+      "face_meshers",
+      {.fallback = o.face_meshers,
+       .choices = {mesh::known_face_meshers.begin(), mesh::known_face_meshers.end()},
+       .unique = true,
+       .not_empty = true,
+       .help = "Meshers to try on each face; those after the first where the worst triangle so "
+               "far is below what the face's corners allow. `own` is ours, the others are Gmsh's "
+               "frontal-Delaunay and Delaunay."});
   o.mesher_target = t.number(
       "mesher_target", {.fallback = o.mesher_target,
                         .min = 0,

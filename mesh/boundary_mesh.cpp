@@ -7,9 +7,8 @@
 #include <map>
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
 #include "mesh/flattening.hpp"
-#include "mesh/planar_mesher.hpp"
+#include "mesh/inner_edges.hpp"
 #include "mesh/projection.hpp"
 #include "mesh/size_field.hpp"
 
@@ -19,8 +18,6 @@ namespace {
 
 using core::Vec3;
 
-/// How far beyond the old face, in its extent, a node may be that is put on its nearest point.
-constexpr double farthest_beyond = 0.02;
 /// A domain face is flat if its points differ by less than this, relative to the domain.
 constexpr double flat = 1e-10;
 
@@ -31,24 +28,10 @@ struct Before {
   }
 };
 
-/// Edges (a < b) that belong to two triangles, with the first such triangle and its side.
-std::vector<std::array<int, 4>> inner_edges(const std::vector<std::array<int, 3>>& triangles) {
-  std::vector<std::array<int, 4>> all, inner;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int i = 0; i < 3; ++i) {
-      const int a = triangles[t][triangle_edges[i][0]], b = triangles[t][triangle_edges[i][1]];
-      all.push_back({std::min(a, b), std::max(a, b), static_cast<int>(t), i});
-    }
-  std::sort(all.begin(), all.end());
-  for (std::size_t i = 0; i + 1 < all.size(); ++i)
-    if (all[i][0] == all[i + 1][0] && all[i][1] == all[i + 1][1]) inner.push_back(all[i]);
-  return inner;
-}
-
 }  // namespace
 
 BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& options,
-                               const Vec3& scale)
+                               const Vec3& scale, FaceMeshers face_meshers)
     : geometry_(geometry),
       options_(options),
       scale_(scale),
@@ -63,7 +46,10 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
       edge_stale_(geometry.edges.size(), true),
       face_stale_(geometry.faces.size(), true),
       why_copied_(geometry.faces.size()),
-      forbidden_(geometry.faces.size()) {
+      forbidden_(geometry.faces.size()),
+      face_meshers_(std::move(face_meshers)),
+      face_mesher_(geometry.faces.size(), -1) {
+  if (!face_meshers_) options_.face_meshers = {own_face_mesher};
   find_planes();
   for (const auto& shape : geometry.edges)
     edge_lengths_.push_back(CurvedEdge(shape, scale).length());
@@ -248,98 +234,6 @@ FaceProjection BoundaryMesher::projection(int face, Flattening flattening) const
   throw core::InternalError("a face laid flat in no known way");
 }
 
-/// The ways of laying a face flat, the best first, until one does.
-std::string BoundaryMesher::mesh_face(int face, const std::vector<Vec3>& positions,
-                                      const std::vector<double>& sizes,
-                                      const BoundaryNumbers& numbers) {
-  if (!geometry_.from_mesh)
-    return mesh_flattened(face, Flattening::mean_plane, -1, positions, sizes, numbers);
-  struct Way {
-    Flattening flattening;
-    double share;
-  };
-  constexpr std::array<Way, 5> ways{{{Flattening::mean_plane, 0.4},
-                                     {Flattening::conformal, 0.2},
-                                     {Flattening::isotropic_plane, 0.05},
-                                     {Flattening::conformal, 0.01},
-                                     {Flattening::circle, 0.001}}};
-  std::string first;
-  for (const auto& way : ways) {
-    const std::string fault =
-        mesh_flattened(face, way.flattening, way.share, positions, sizes, numbers);
-    if (fault.empty()) return {};
-    if (first.empty()) first = fault;
-  }
-  return first;
-}
-
-std::string BoundaryMesher::mesh_flattened(int face, Flattening flattening, double share,
-                                           const std::vector<Vec3>& positions,
-                                           const std::vector<double>& sizes,
-                                           const BoundaryNumbers& numbers) {
-  const FaceProjection projection = this->projection(face, flattening);
-  if (share >= 0 && !projection.projects(share)) return "its surface does not project on a plane";
-  FaceMesh& result = faces_[face];
-  result = {};
-  result.flattening = flattening;
-  PlanarProblem problem;
-  problem.element_size = sizes_.faces[face];
-  problem.progression_factor = options_.progression_factor;
-  problem.forbidden_edges = forbidden_[face];
-  const auto boundary_nodes = face_nodes(face, numbers);
-  for (int n : boundary_nodes) {
-    problem.boundary.push_back(projection.project(positions[n]));
-    problem.sizes.push_back(sizes[n]);
-  }
-  if (!projection.is_mean_plane()) {
-    for (std::size_t i = 0; i < boundary_nodes.size(); ++i)
-      if (const Vec3& x = positions[boundary_nodes[i]];
-          !((projection.lift(problem.boundary[i]) - x).cwiseProduct(scale_).norm() <=
-            farthest_beyond * projection.extent()))
-        return "its edges are not where its surface ends";
-    take_flat_sizes(problem, boundary_nodes, positions);
-  }
-  PlanarMesh plane;
-  if (!mesh_polygon(problem, plane)) return plane.fault;
-  double farthest = 0;
-  std::vector<Vec3> x;
-  result.boundary_count = static_cast<int>(problem.boundary.size());
-  for (int n : boundary_nodes) x.push_back(positions[n]);
-  for (std::size_t i = problem.boundary.size(); i < plane.points.size(); ++i) {
-    double beyond = 0;
-    x.push_back(projection.lift(plane.points[i], &beyond));
-    keep_in_plane_of(face, x.back());
-    result.nearest_points += beyond > 0;
-    farthest = std::max(farthest, beyond);
-    result.inner_nodes.push_back(x.back());
-  }
-  result.triangles = plane.triangles;
-  result.places = plane.points;
-  for (const auto& [a, b, t, i] : inner_edges(plane.triangles))
-    result.inner_edges.push_back({a, b, Vec3::Zero()});
-  farthest = std::max(farthest, place_mids(face, projection, x));
-  if (!(farthest <= farthest_beyond * projection.extent()))
-    return fmt::format("a node of its mesh is {:.3g} beyond its old surface, of {:.3g} extent",
-                       farthest, projection.extent());
-  return {};
-}
-
-/// Where the plane stretches lengths, sizes go with those of the 1D elements around.
-void BoundaryMesher::take_flat_sizes(PlanarProblem& problem, const std::vector<int>& nodes,
-                                     const std::vector<Vec3>& positions) const {
-  const std::size_t n = problem.boundary.size();
-  std::vector<double> flat(n), real(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t j = (i + 1) % n;
-    flat[i] = (problem.boundary[j] - problem.boundary[i]).norm();
-    real[i] = (positions[nodes[j]] - positions[nodes[i]]).cwiseProduct(scale_).norm();
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t before = (i + n - 1) % n;
-    problem.sizes[i] *= (flat[i] + flat[before]) / (real[i] + real[before]);
-  }
-}
-
 double BoundaryMesher::place_mids(int face, const FaceProjection& projection,
                                   const std::vector<Vec3>& x) {
   double farthest = 0;
@@ -424,20 +318,11 @@ void BoundaryMesher::mesh_faces(std::vector<char>& changed) {
         forbidden_[f].clear();
       }
     std::fill(edge_stale_.begin(), edge_stale_.end(), false);
-    const auto numbers_now = numbers();
-    const auto x = positions(numbers_now);
-    const auto sizes = node_sizes(numbers_now);
     std::vector<int> stale;
     for (std::size_t f = 0; f < faces.size(); ++f)
       if (face_stale_[f] && !is_slave_face(static_cast<int>(f)))
         stale.push_back(static_cast<int>(f));
-    std::vector<std::string> faults(stale.size());
-    core::parallel_for(core::thread_count(options_.jobs), stale.size(), [&](std::size_t i) {
-      if (face_copied_[stale[i]])
-        copy_face_mesh(stale[i]);
-      else
-        faults[i] = mesh_face(stale[i], x, sizes, numbers_now);
-    });
+    const auto faults = mesh_list(stale, nodes());
     for (const int f : stale) {
       face_stale_[f] = false;
       changed[f] = true;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/face_mesher.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/planar_mesher.hpp"
 #include "mesh/projection.hpp"
@@ -49,8 +50,9 @@ struct BoundaryNumbers {
 
 class BoundaryMesher {
  public:
-  /// The geometry must outlive the mesher.
-  BoundaryMesher(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale);
+  /// The geometry must outlive the mesher. Without `face_meshers`, ours meshes all faces.
+  BoundaryMesher(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
+                 FaceMeshers face_meshers = {});
 
   /// Keep a face's old mesh, and with it those of its edges, from the next update on. False if it
   /// is kept already or the geometry has none.
@@ -100,6 +102,10 @@ class BoundaryMesher {
   /// Largest ratio of the lengths of adjacent 1D elements, along edges and across vertices, copied
   /// edges left out.
   double largest_progression() const;
+  /// [options.face_meshers] Faces whose mesh is of each; slaves and copied ones left out.
+  std::vector<int> face_wins() const;
+  /// One line for each mesh of a face that crashed or was invalid while another was found.
+  const std::vector<std::string>& face_faults() const { return face_faults_; }
   /// Largest angle of a face's surface to its mean plane, radians.
   double distortion(int face) const;
 
@@ -127,13 +133,27 @@ class BoundaryMesher {
   void copy_edge(int edge);
   std::vector<double> node_sizes(const BoundaryNumbers& numbers) const;
   FaceProjection projection(int face, Flattening flattening) const;
-  /// Why the face could not be meshed; empty if it was.
-  std::string mesh_face(int face, const std::vector<core::Vec3>& positions,
-                        const std::vector<double>& sizes, const BoundaryNumbers& numbers);
-  /// The same in one way of laying it flat, of which each part keeps this share of its area.
-  std::string mesh_flattened(int face, Flattening flattening, double share,
-                             const std::vector<core::Vec3>& positions,
-                             const std::vector<double>& sizes, const BoundaryNumbers& numbers);
+  /// What faces are meshed from.
+  struct Nodes {
+    BoundaryNumbers numbers;
+    std::vector<core::Vec3> positions;  ///< by number
+    std::vector<double> sizes;          ///< by number, scaled frame
+  };
+  /// A way of laying a face flat, of which each part keeps this share of its area.
+  struct Way {
+    Flattening flattening;
+    double share;
+  };
+  struct FaceWork;
+  Nodes nodes() const;
+  /// Meshes the faces of the list, or copies them; for each why it could not be done, or nothing.
+  std::vector<std::string> mesh_list(const std::vector<int>& faces, const Nodes& nodes);
+  void mesh_chunk(std::span<const int> faces, const Nodes& nodes, std::span<std::string> faults);
+  void mesh_flattened(const Way& way, const Nodes& nodes, const std::vector<FaceWork*>& works);
+  void begin_face(const Way& way, const Nodes& nodes, FaceWork& work);
+  void try_mesher(std::size_t mesher, const std::vector<FaceWork*>& works);
+  /// Carries the best plane mesh to the face.
+  void finish_face(const Nodes& nodes, FaceWork& work);
   std::string name(int face) const;
   /// Number of a node of an edge, ends included.
   int number_of(int edge, int node, const BoundaryNumbers& numbers) const;
@@ -181,6 +201,9 @@ class BoundaryMesher {
   std::vector<char> edge_copied_, face_copied_, edge_stale_, face_stale_;
   std::vector<std::string> why_copied_;
   std::vector<std::vector<std::array<int, 2>>> forbidden_;  ///< [faces] local numbers
+  FaceMeshers face_meshers_;
+  std::vector<int> face_mesher_;  ///< [faces] place in options.face_meshers; -1: copied or a slave
+  std::vector<std::string> face_faults_;
 };
 
 }  // namespace polyslip::mesh

@@ -59,6 +59,7 @@ struct MeshingOptions {
   double progression_factor = 2.0;           ///< p_l
   int order = 2;
   std::vector<std::string> meshers{"gmsh-hxt", "gmsh-delaunay", "netgen"};
+  std::vector<std::string> face_meshers{own_face_mesher};  ///< the first that is good enough
   double mesher_target = 0.9;  ///< share of the surface's O from which on no further mesher tries
   double mesher_timeout = 60;  ///< seconds of CPU a grain and candidate
   int jobs = 0;                ///< worker processes, and threads; 0: one a core
@@ -70,6 +71,7 @@ struct MeshingReport {
   std::vector<std::string> why_copied;  ///< [copied_faces] in words
   std::vector<std::string> faults;      ///< one line for each candidate that crashed or was invalid
   std::vector<int> wins;                ///< [meshers] grains won by each
+  std::vector<int> face_wins;           ///< [face meshers] faces won by each, copied ones left out
   int straightened = 0;                 ///< mid nodes pulled towards their chord to keep det J > 0
   int nearest_points = 0;               ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                    ///< mean over grains of eq. (5)

@@ -2,19 +2,26 @@
 #include "mesh/pipeline.hpp"
 
 namespace polyslip::mesh {
+namespace {
+
+PoolOptions pool_options(const MeshingOptions& options, std::vector<std::string> meshers) {
+  PoolOptions result;
+  result.meshers = std::move(meshers);
+  result.element_size = options.element_size;
+  result.target = options.mesher_target;
+  result.timeout = options.mesher_timeout;
+  result.jobs = options.jobs;
+  return result;
+}
+
+}  // namespace
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    MesherPool& pool, MeshingReport& report, const MeshingProgress& progress) {
   const auto by = [&](std::vector<std::string> meshers) -> GrainMeshers {
-    PoolOptions pool_options;
-    pool_options.meshers = std::move(meshers);
-    pool_options.element_size = options.element_size;
-    pool_options.target = options.mesher_target;
-    pool_options.timeout = options.mesher_timeout;
-    pool_options.jobs = options.jobs;
-    return [&pool, pool_options](std::size_t count, const RequestSource& source,
-                                 const ResultSink& sink) {
-      pool.mesh(count, source, sink, pool_options);
+    const PoolOptions chosen = pool_options(options, std::move(meshers));
+    return [&pool, chosen](std::size_t count, const RequestSource& source, const ResultSink& sink) {
+      pool.mesh(count, source, sink, chosen);
     };
   };
   const auto& all = options.meshers;
@@ -22,7 +29,11 @@ Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, cons
   // In a remeshing the worst element counts for more than O (docs/theory-polycrystal.md, (P.31)).
   if (!geometry.from_mesh && options.slide_boundary && options.mesher_target < 1 && all.size() > 1)
     turns = {by({all.front()}), by({all.begin() + 1, all.end()})};
-  return mesh_geometry(geometry, options, scale, by(all), report, progress, turns);
+  const FaceMeshers face_meshers = [&](const std::vector<FaceRequest>& requests,
+                                       const std::string& mesher) {
+    return pool.mesh_faces(requests, mesher, pool_options(options, {mesher}));
+  };
+  return mesh_geometry(geometry, options, scale, by(all), report, progress, turns, face_meshers);
 }
 
 }  // namespace polyslip::mesh

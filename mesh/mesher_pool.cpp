@@ -1,19 +1,14 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <poll.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <list>
 #include <memory>
-#include <thread>
 
 #include "core/error.hpp"
 #include "mesh/candidate.hpp"
-#include "mesh/mesher_spawner.hpp"
-#include "mesh/mesher_task.hpp"
+#include "mesh/mesher_processes.hpp"
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh {
@@ -64,12 +59,6 @@ void check_options(const PoolOptions& options) {
         fmt::format("mesher target {} must be above 0 and at most 1", options.target));
   if (!(options.timeout > 0) || options.timeout > 1e6)
     throw core::InputError(fmt::format("mesher timeout {} s must be positive", options.timeout));
-}
-
-std::size_t job_count(const PoolOptions& options) {
-  const int jobs =
-      options.jobs > 0 ? options.jobs : static_cast<int>(std::thread::hardware_concurrency());
-  return static_cast<std::size_t>(std::clamp(jobs, 1, protocol::max_children / 2));
 }
 
 std::string surface_fault(const SurfaceMesh& surface) {
@@ -153,43 +142,15 @@ class MesherPool::Stream {
   const PoolOptions& options_;
   std::vector<std::list<Batch>> lines_;  // [meshers]
   std::vector<Batch> gathering_;         // [meshers] the last of the line, not yet full
-  std::list<MesherTask*> running_;
-};
-
-struct MesherPool::Impl {
-  explicit Impl(const std::string& executable) : spawner(executable) {}
-
-  void wait(const std::list<MesherTask*>& running);
-  void take_reports(const std::list<MesherTask*>& running);
-  void take_report(const protocol::ControlMessage& message, MesherTask& task);
-
-  Spawner spawner;
-  std::uint32_t tokens = 0;
-  double cpu_seconds = 0;
 };
 
 void MesherPool::Stream::run() {
-  const std::size_t jobs = job_count(options_);
-  try {
-    for (;;) {
-      while (running_.size() < jobs) {
-        Batch* batch = start_next();
-        if (!batch) break;
-        running_.push_back(batch->task.get());
-      }
-      for (MesherTask* task : running_)
-        if (!task->running()) task->start(pool_.spawner, ++pool_.tokens);
-      if (running_.empty()) return;
-      refill();  // while the meshers work
-      pool_.wait(running_);
-      running_.remove_if([](const MesherTask* task) { return task->finished(); });
-      pass_on();
-    }
-  } catch (const core::RecoverableError&) {
-    for (MesherTask* task : running_)
-      if (task->running()) pool_.spawner.kill_child(task->token());
-    throw;
-  }
+  const auto start = [this]() -> MesherTask* {
+    Batch* batch = start_next();
+    return batch ? batch->task.get() : nullptr;
+  };
+  pool_.run(
+      job_count(options_.jobs), start, [this] { refill(); }, [this] { pass_on(); });
 }
 
 std::size_t MesherPool::Stream::batches() const {
@@ -246,15 +207,30 @@ Batch* MesherPool::Stream::start_next() {
 }
 
 void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
-  const auto take_mesh = [&batch, mesher, this](std::size_t i, VolumeMesh&& mesh) {
-    batch.candidates[i].offer(mesher, std::move(mesh), size_of(batch.requests[i]));
+  MesherWork work;
+  work.mesher = options_.meshers[mesher];
+  work.timeout = options_.timeout;
+  work.count = batch.places.size();
+  work.encode = [&batch, work, this](std::size_t first) {
+    protocol::Batch left{work.mesher, options_.element_size, work.timeout, {}};
+    left.grains.assign(batch.requests.begin() + static_cast<std::ptrdiff_t>(first),
+                       batch.requests.end());
+    return protocol::encode(left);
   };
-  const auto take_fault = [&batch, mesher](std::size_t i, const std::string& why) {
+  work.name = [&batch](std::size_t i) {
+    return fmt::format("grain {}", batch.requests[i].grain + 1);
+  };
+  work.take = [&batch, mesher, this](std::size_t i, const protocol::Bytes& answer) {
+    VolumeMesh mesh = protocol::decode_mesh(answer);
+    std::string fault = validate(batch.requests[i].surface, mesh);
+    if (fault.empty())
+      batch.candidates[i].offer(mesher, std::move(mesh), size_of(batch.requests[i]));
+    return fault;
+  };
+  work.take_fault = [&batch, mesher](std::size_t i, const std::string& why) {
     batch.candidates[i].faults[mesher] = why;
   };
-  batch.task = std::make_unique<MesherTask>(
-      batch.requests, 0, batch.places.size(), options_.meshers[mesher], options_.element_size,
-      options_.timeout, MesherTask::Sink{take_mesh, take_fault});
+  batch.task = std::make_unique<MesherTask>(std::move(work));
 }
 
 double MesherPool::Stream::size_of(const GrainRequest& request) const {
@@ -292,39 +268,6 @@ void MesherPool::Stream::pass_on(std::size_t mesher, Batch& batch) {
     next.candidates.push_back(std::move(batch.candidates[i]));
     if (next.places.size() == batch_size) close_batch(mesher + 1);
   }
-}
-
-void MesherPool::Impl::wait(const std::list<MesherTask*>& running) {
-  std::vector<pollfd> sources{{spawner.control(), POLLIN, 0}};
-  std::vector<MesherTask*> owners{nullptr};
-  for (MesherTask* task : running)
-    if (task->socket() >= 0) {
-      const int events = POLLIN | (task->wants_to_send() ? POLLOUT : 0);
-      sources.push_back({task->socket(), static_cast<short>(events), 0});
-      owners.push_back(task);
-    }
-  if (poll(sources.data(), sources.size(), -1) < 0 && errno != EINTR)
-    throw core::InternalError("mesher pool: poll failed");
-  for (std::size_t i = 1; i < sources.size(); ++i)
-    if (sources[i].revents != 0) owners[i]->work(spawner);
-  if (sources[0].revents != 0) take_reports(running);
-}
-
-void MesherPool::Impl::take_reports(const std::list<MesherTask*>& running) {
-  while (const auto message = spawner.next_message()) {
-    if (message->kind == protocol::Control::ended) cpu_seconds += message->cpu_seconds;
-    for (MesherTask* task : running)
-      if (task->running() && task->token() == message->token) take_report(*message, *task);
-  }
-}
-
-void MesherPool::Impl::take_report(const protocol::ControlMessage& message, MesherTask& task) {
-  if (message.kind == protocol::Control::ended) task.child_ended(spawner, message.value);
-  if (message.kind == protocol::Control::not_forked)
-    throw core::RecoverableError(
-        fmt::format("no process for a mesher after several tries: {}; free processes or memory, or "
-                    "raise the limits (ulimit -u, ulimit -v)",
-                    strerror(message.value)));
 }
 
 MesherPool::MesherPool(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

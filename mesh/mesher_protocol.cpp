@@ -23,9 +23,14 @@ class Writer {
     put<std::uint64_t>(text.size());
     put_raw(text.data(), text.size());
   }
-  void put(const std::vector<core::Vec3>& points) {
+  template <int N>
+  void put(const std::vector<Eigen::Matrix<double, N, 1>>& points) {
     put<std::uint64_t>(points.size());
-    for (const auto& p : points) put_raw(p.data(), 3 * sizeof(double));
+    for (const auto& p : points) put_raw(p.data(), N * sizeof(double));
+  }
+  void put(const std::vector<double>& values) {
+    put<std::uint64_t>(values.size());
+    put_raw(values.data(), values.size() * sizeof(double));
   }
   template <std::size_t N>
   void put(const std::vector<std::array<int, N>>& rows) {
@@ -40,6 +45,7 @@ class Writer {
 
  private:
   void put_raw(const void* data, std::size_t size) {
+    if (size == 0) return;
     const char* begin = static_cast<const char*>(data);
     bytes_.insert(bytes_.end(), begin, begin + size);
   }
@@ -62,10 +68,16 @@ class Reader {
     get_raw(text.data(), text.size());
     return text;
   }
-  std::vector<core::Vec3> get_points() {
-    std::vector<core::Vec3> points(get_count(3 * sizeof(double)));
-    for (auto& p : points) get_raw(p.data(), 3 * sizeof(double));
+  template <int N>
+  std::vector<Eigen::Matrix<double, N, 1>> get_points() {
+    std::vector<Eigen::Matrix<double, N, 1>> points(get_count(N * sizeof(double)));
+    for (auto& p : points) get_raw(p.data(), N * sizeof(double));
     return points;
+  }
+  std::vector<double> get_values() {
+    std::vector<double> values(get_count(sizeof(double)));
+    get_raw(values.data(), values.size() * sizeof(double));
+    return values;
   }
   template <std::size_t N>
   std::vector<std::array<int, N>> get_rows() {
@@ -109,12 +121,35 @@ Bytes encode(const Batch& batch) {
   return w.finish();
 }
 
+Bytes encode(const FaceBatch& batch) {
+  Writer w(Kind::face_batch, 0);
+  w.put(batch.mesher);
+  w.put(batch.timeout);
+  w.put<std::uint64_t>(batch.faces.size());
+  for (const auto& [face, problem] : batch.faces) {
+    w.put(face);
+    w.put(problem.element_size);
+    w.put(problem.progression_factor);
+    w.put(problem.boundary);
+    w.put(problem.sizes);
+    w.put(problem.forbidden_edges);
+  }
+  return w.finish();
+}
+
 Bytes encode_begin(std::uint64_t index) { return Writer(Kind::begin, index).finish(); }
 
 Bytes encode_mesh(std::uint64_t index, const VolumeMesh& mesh) {
   Writer w(Kind::mesh, index);
   w.put(mesh.nodes);
   w.put(mesh.tetrahedra);
+  return w.finish();
+}
+
+Bytes encode_mesh(std::uint64_t index, const PlanarMesh& mesh) {
+  Writer w(Kind::mesh, index);
+  w.put(mesh.points);
+  w.put(mesh.triangles);
   return w.finish();
 }
 
@@ -142,7 +177,7 @@ Batch decode_batch(const Bytes& payload) {
     GrainRequest grain;
     grain.grain = r.get<int>();
     grain.element_size = r.get<double>();
-    grain.surface.nodes = r.get_points();
+    grain.surface.nodes = r.get_points<3>();
     grain.surface.triangles = r.get_rows<3>();
     batch.grains.push_back(std::move(grain));
   }
@@ -150,10 +185,40 @@ Batch decode_batch(const Bytes& payload) {
   return batch;
 }
 
+FaceBatch decode_face_batch(const Bytes& payload) {
+  Reader r(payload);
+  FaceBatch batch;
+  batch.mesher = r.get_string();
+  batch.timeout = r.get<double>();
+  const auto count = r.get<std::uint64_t>();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    FaceRequest request;
+    request.face = r.get<int>();
+    PlanarProblem& problem = request.problem;
+    problem.element_size = r.get<double>();
+    problem.progression_factor = r.get<double>();
+    problem.boundary = r.get_points<2>();
+    problem.sizes = r.get_values();
+    problem.forbidden_edges = r.get_rows<2>();
+    batch.faces.push_back(std::move(request));
+  }
+  r.finish();
+  return batch;
+}
+
+PlanarMesh decode_face_mesh(const Bytes& payload) {
+  Reader r(payload);
+  PlanarMesh mesh;
+  mesh.points = r.get_points<2>();
+  mesh.triangles = r.get_rows<3>();
+  r.finish();
+  return mesh;
+}
+
 VolumeMesh decode_mesh(const Bytes& payload) {
   Reader r(payload);
   VolumeMesh mesh;
-  mesh.nodes = r.get_points();
+  mesh.nodes = r.get_points<3>();
   mesh.tetrahedra = r.get_rows<4>();
   r.finish();
   return mesh;

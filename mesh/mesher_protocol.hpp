@@ -4,8 +4,8 @@
 // mesher may have written anywhere before it answers.
 //
 // Control socket (main program <-> server; SOCK_SEQPACKET): ControlMessage, a `start` with a
-// socket. Batch socket (main program <-> child): one `batch`; then, for each grain in its order,
-// `begin` and `mesh` or `failed`; after `failed` the child ends.
+// socket. Batch socket (main program <-> child): one `batch` of grains or `face_batch`; then, for
+// each grain or face in its order, `begin` and `mesh` or `failed`; after `failed` the child ends.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "mesh/face_mesher.hpp"
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh::protocol {
@@ -38,12 +39,12 @@ struct ControlMessage {
   double cpu_seconds = 0;  ///< of the ended child
 };
 
-enum class Kind : std::uint32_t { batch = 1, begin, mesh, failed };
+enum class Kind : std::uint32_t { batch = 1, face_batch, begin, mesh, failed };
 
 struct Header {
   std::uint32_t magic = 0;
   Kind kind = Kind::batch;
-  std::uint64_t index = 0;   ///< grain within the batch
+  std::uint64_t index = 0;   ///< grain or face within the batch
   std::uint64_t length = 0;  ///< bytes that follow
 };
 inline constexpr std::uint32_t magic = 0x504d5348;
@@ -64,16 +65,26 @@ struct Batch {
   std::vector<GrainRequest> grains;
 };
 
+struct FaceBatch {
+  std::string mesher;
+  double timeout = 0;  ///< CPU seconds a face
+  std::vector<FaceRequest> faces;
+};
+
 /// Header and payload in one.
 Bytes encode(const Batch& batch);
+Bytes encode(const FaceBatch& batch);
 Bytes encode_begin(std::uint64_t index);
 Bytes encode_mesh(std::uint64_t index, const VolumeMesh& mesh);
+Bytes encode_mesh(std::uint64_t index, const PlanarMesh& mesh);
 Bytes encode_failed(std::uint64_t index, const std::string& why);
 
 /// Payloads; throw ProtocolError.
 Header decode_header(const char* bytes);
 Batch decode_batch(const Bytes& payload);
+FaceBatch decode_face_batch(const Bytes& payload);
 VolumeMesh decode_mesh(const Bytes& payload);
+PlanarMesh decode_face_mesh(const Bytes& payload);
 std::string decode_failed(const Bytes& payload);
 
 /// Whole buffers over a blocking socket, no SIGPIPE; false if the other side is gone.

@@ -12,24 +12,11 @@
 
 namespace polyslip::mesh {
 
-MesherTask::MesherTask(const std::vector<GrainRequest>& requests, std::size_t first,
-                       std::size_t last, std::string mesher, double element_size, double timeout,
-                       Sink sink)
-    : requests_(requests),
-      last_(last),
-      next_(first),
-      base_(first),
-      mesher_(std::move(mesher)),
-      element_size_(element_size),
-      timeout_(timeout),
-      sink_(std::move(sink)) {}
+MesherTask::MesherTask(MesherWork work) : work_(std::move(work)) {}
 
 void MesherTask::start(Spawner& spawner, std::uint32_t token) {
   base_ = next_;
-  protocol::Batch batch{mesher_, element_size_, timeout_, {}};
-  batch.grains.assign(requests_.begin() + static_cast<std::ptrdiff_t>(next_),
-                      requests_.begin() + static_cast<std::ptrdiff_t>(last_));
-  output_ = protocol::encode(batch);
+  output_ = work_.encode(next_);
   input_.clear();
   sent_ = 0;
   token_ = token;
@@ -53,7 +40,7 @@ void MesherTask::child_ended(Spawner& spawner, int status) {
     socket_.reset();
   }
   running_ = false;
-  if (!failed_ && next_ < last_) fail(describe(status));
+  if (!failed_ && next_ < work_.count) fail(describe(status));
 }
 
 void MesherTask::send_some() {
@@ -97,27 +84,23 @@ void MesherTask::read_messages(Spawner& spawner) {
 }
 
 void MesherTask::obey(const protocol::Header& header, const protocol::Bytes& payload) {
-  if (header.index != next_ - base_ || next_ >= last_)
-    throw protocol::ProtocolError("another grain than the one at work");
+  if (header.index != next_ - base_ || next_ >= work_.count)
+    throw protocol::ProtocolError("another item than the one at work");
   if (header.kind == protocol::Kind::begin) return;
   if (header.kind == protocol::Kind::failed) {
     fail(protocol::decode_failed(payload));
     return;
   }
   if (header.kind != protocol::Kind::mesh) throw protocol::ProtocolError("an unknown message");
-  VolumeMesh mesh = protocol::decode_mesh(payload);
-  const std::string fault = validate(requests_[next_].surface, mesh);
-  if (!fault.empty()) {
+  const std::string fault = work_.take(next_, payload);
+  if (fault.empty())
+    ++next_;
+  else
     fail(fault);
-    return;
-  }
-  sink_.take_mesh(next_, std::move(mesh));
-  ++next_;
 }
 
 void MesherTask::fail(const std::string& why) {
-  sink_.take_fault(
-      next_, fmt::format("mesher '{}', grain {}: {}", mesher_, requests_[next_].grain + 1, why));
+  work_.take_fault(next_, fmt::format("mesher '{}', {}: {}", work_.mesher, work_.name(next_), why));
   ++next_;
   failed_ = true;
 }
@@ -130,7 +113,7 @@ void MesherTask::abandon(Spawner& spawner) {
 std::string MesherTask::describe(int status) const {
   if (!WIFSIGNALED(status)) return fmt::format("ended with code {}", WEXITSTATUS(status));
   const int signal = WTERMSIG(status);
-  if (signal == SIGXCPU) return fmt::format("killed after {:g} s of CPU", timeout_);
+  if (signal == SIGXCPU) return fmt::format("killed after {:g} s of CPU", work_.timeout);
   if (signal == SIGALRM) return "killed: it neither computed nor ended";
   return fmt::format("killed by signal {} ({})", signal, strsignal(signal));
 }

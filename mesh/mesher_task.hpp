@@ -1,5 +1,5 @@
 #pragma once
-// One batch of grains with one mesher, as the main program sees it.
+// One batch of grains or faces with one mesher, as the main program sees it.
 
 #include <sys/types.h>
 
@@ -13,21 +13,28 @@
 
 namespace polyslip::mesh {
 
-/// Walks through the requests [first, last), child by child: a child that ends early, sends what is
-/// no message or a mesh that is not valid costs the grain that it was at; a new child goes on with
-/// the grain after it. What a child sends after such a fault is not read, so that nothing depends
-/// on how far it came.
+/// What a task does, item by item.
+struct MesherWork {
+  std::string mesher;
+  double timeout = 0;     ///< CPU seconds an item
+  std::size_t count = 0;  ///< of items
+  std::function<protocol::Bytes(std::size_t first)>
+      encode;                                         ///< the message for items [first, count)
+  std::function<std::string(std::size_t item)> name;  ///< for messages: "grain 7"
+  /// Decodes, validates and takes an answer; why it is not one, else nothing.
+  std::function<std::string(std::size_t item, const protocol::Bytes& answer)> take;
+  std::function<void(std::size_t item, const std::string& why)> take_fault;
+};
+
+/// Walks through its items, child by child: a child that ends early, sends what is no message or a
+/// mesh that is not valid costs the item that it was at; a new child goes on with the item after
+/// it. What a child sends after such a fault is not read, so that nothing depends on how far it
+/// came.
 class MesherTask {
  public:
-  struct Sink {
-    std::function<void(std::size_t request, VolumeMesh&& mesh)> take_mesh;  ///< valid ones
-    std::function<void(std::size_t request, const std::string& why)> take_fault;
-  };
+  explicit MesherTask(MesherWork work);
 
-  MesherTask(const std::vector<GrainRequest>& requests, std::size_t first, std::size_t last,
-             std::string mesher, double element_size, double timeout, Sink sink);
-
-  /// Starts a child for the grains that are left.
+  /// Starts a child for the items that are left.
   void start(Spawner& spawner, std::uint32_t token);
   /// Sends and receives what the socket takes and has.
   void work(Spawner& spawner);
@@ -38,7 +45,7 @@ class MesherTask {
   int socket() const { return socket_.get(); }  ///< -1: nothing to wait for but the child's end
   bool wants_to_send() const { return sent_ < output_.size(); }
   bool running() const { return running_; }
-  bool finished() const { return !running_ && next_ == last_; }
+  bool finished() const { return !running_ && next_ == work_.count; }
 
  private:
   void send_some();
@@ -49,11 +56,8 @@ class MesherTask {
   void abandon(Spawner& spawner);
   std::string describe(int status) const;
 
-  const std::vector<GrainRequest>& requests_;
-  std::size_t last_, next_, base_;  // base_: the first request of the present child
-  std::string mesher_;
-  double element_size_, timeout_;
-  Sink sink_;
+  MesherWork work_;
+  std::size_t next_ = 0, base_ = 0;  // base_: the first item of the present child
   Descriptor socket_;
   std::uint32_t token_ = 0;
   bool running_ = false;

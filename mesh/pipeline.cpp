@@ -41,7 +41,7 @@ class Pipeline {
  public:
   Pipeline(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
            const GrainMeshers& meshers, MeshingReport& report, const MeshingProgress& progress,
-           const TurnsOfMeshers& turns)
+           const TurnsOfMeshers& turns, const FaceMeshers& face_meshers)
       : geometry_(geometry),
         options_(options),
         scale_(scale),
@@ -50,7 +50,7 @@ class Pipeline {
         report_(report),
         progress_(progress),
         threads_(core::thread_count(options.jobs)),
-        boundary_(geometry, options, scale),
+        boundary_(geometry, options, scale, face_meshers),
         results_(geometry.topology.cell_count()) {}
 
   Mesh run() {
@@ -263,6 +263,8 @@ class Pipeline {
       for (std::size_t i = 0; i < options_.meshers.size(); ++i)
         report_.wins[i] += r.mesher == options_.meshers[i];
     }
+    report_.face_wins = boundary_.face_wins();
+    for (const auto& fault : boundary_.face_faults()) report_.faults.push_back(fault);
     report_.copied_faces.clear();
     report_.why_copied.clear();
     for (int f = 0; f < static_cast<int>(geometry_.topology.faces.size()); ++f) {
@@ -301,9 +303,10 @@ std::string repairs_text(const MeshingReport& report) {
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,
-                   const MeshingProgress& progress, const TurnsOfMeshers& turns) {
+                   const MeshingProgress& progress, const TurnsOfMeshers& turns,
+                   const FaceMeshers& face_meshers) {
   report = {};
-  return Pipeline(geometry, options, scale, meshers, report, progress, turns).run();
+  return Pipeline(geometry, options, scale, meshers, report, progress, turns, face_meshers).run();
 }
 
 }  // namespace polyslip::mesh

@@ -19,9 +19,10 @@ struct TurnsOfMeshers {
 
 /// As mesh_geometry (mesh/geometry.hpp), by `meshers`; with `turns`, these make the grains' first
 /// meshes, and grains that are not good enough once nodes have slid (mesh/candidate.hpp) are left
-/// to `meshers`.
+/// to `meshers`. Faces by our own mesher alone if there are no `face_meshers`.
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    const GrainMeshers& meshers, MeshingReport& report,
-                   const MeshingProgress& progress = {}, const TurnsOfMeshers& turns = {});
+                   const MeshingProgress& progress = {}, const TurnsOfMeshers& turns = {},
+                   const FaceMeshers& face_meshers = {});
 
 }  // namespace polyslip::mesh

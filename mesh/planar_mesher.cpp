@@ -51,6 +51,11 @@ struct Grid {
     scale = std::ldexp(1.0, 27) / std::max((high - low).maxCoeff(), 1e-300);
   }
   GridPoint of(const Vector2d& x) const { return of_units((x - origin) * scale); }
+  std::vector<GridPoint> of(const std::vector<Vector2d>& points) const {
+    std::vector<GridPoint> result;
+    for (const auto& x : points) result.push_back(of(x));
+    return result;
+  }
   static GridPoint of_units(const Vector2d& x) { return {std::llround(x[0]), std::llround(x[1])}; }
 };
 
@@ -237,21 +242,25 @@ double radius_ratio(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return 4 * area2 * std::abs(area2) / (la * lb * lc * (la + lb + lc));
 }
 
+std::string boundary_fault(const PlanarProblem& problem) {
+  if (problem.boundary.size() < 3) return "its boundary has less than three nodes";
+  for (const auto& x : problem.boundary)
+    if (!x.allFinite()) return "a node of its boundary is not finite";
+  if (!is_simple(Grid(problem.boundary).of(problem.boundary)))
+    return "its projected boundary meets itself or turns right";
+  return {};
+}
+
 bool mesh_polygon(const PlanarProblem& problem, PlanarMesh& mesh) {
-  const auto fail = [&](const char* why) {
+  const auto fail = [&](const std::string& why) {
     mesh = {};
     mesh.fault = why;
     return false;
   };
   mesh = {};
-  if (problem.boundary.size() < 3) return fail("its boundary has less than three nodes");
-  for (const auto& x : problem.boundary)
-    if (!x.allFinite()) return fail("a node of its boundary is not finite");
+  if (const std::string fault = boundary_fault(problem); !fault.empty()) return fail(fault);
   const Grid grid(problem.boundary);
-  std::vector<GridPoint> polygon;
-  for (const auto& x : problem.boundary) polygon.push_back(grid.of(x));
-  if (!is_simple(polygon)) return fail("its projected boundary meets itself or turns right");
-  Refiner refiner(problem, grid, polygon);
+  Refiner refiner(problem, grid, grid.of(problem.boundary));
   refiner.run();
   auto& triangulation = refiner.mesh();
   for (const auto& [a, b] : problem.forbidden_edges)

@@ -26,6 +26,10 @@ struct PlanarMesh {
 /// 2 r_in / R_circ of a triangle; 1 for an equilateral one, negative if it turns right.
 double radius_ratio(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c);
 
+/// Why no mesh is possible; empty if there is no reason: three nodes or more, finite, a polygon
+/// that neither meets itself nor turns right.
+std::string boundary_fault(const PlanarProblem& problem);
+
 /// Delaunay triangulation, frontal point insertion (Rebay, J. Comput. Phys. 106, 1993) to the
 /// sizes, smoothing. Predicates are exact, on a grid of 2^-27 of the polygon's extent. Returns
 /// whether there is a mesh; if not, it holds the fault: the polygon is not simple, an edge that is

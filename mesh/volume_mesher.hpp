@@ -1,5 +1,5 @@
 #pragma once
-// Meshing one grain's inside from its surface, by several meshers in worker processes.
+// Meshing one grain's inside from its surface, by several meshers in worker processes; and faces.
 
 #include <array>
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "mesh/face_mesher.hpp"
 
 namespace polyslip::mesh {
 
@@ -89,6 +90,12 @@ class MesherPool {
   /// they are meshed: no more than 10,000 are held at once. Results come in any order.
   void mesh(std::size_t count, const RequestSource& source, const ResultSink& sink,
             const PoolOptions& options);
+
+  /// Meshes of faces by one mesher that is not ours (mesh/face_mesher.hpp), in the order of the
+  /// requests and the same for any number of jobs, as for grains. A face that could not be meshed
+  /// has its `fault`, which names mesher and face. `options`: timeout and jobs. Throws as above.
+  std::vector<PlanarMesh> mesh_faces(const std::vector<FaceRequest>& requests,
+                                     const std::string& mesher, const PoolOptions& options);
 
   /// CPU time of all mesher processes so far [s].
   double cpu_seconds() const;

@@ -61,4 +61,12 @@ void FaultInjection::after(const std::string& mesher, int grain, VolumeMesh& mes
   if (asked(mesher, grain, "garbage")) protocol::send_all(socket, protocol::Bytes(1000, 'x'));
 }
 
+void FaultInjection::after(const std::string& mesher, int face, PlanarMesh& mesh,
+                           int socket) const {
+  if (asked(mesher, face, "nan")) mesh.points.back().x() = std::numeric_limits<double>::quiet_NaN();
+  if (asked(mesher, face, "move"))
+    mesh.points.front().x() = std::nextafter(mesh.points.front().x(), 1e300);
+  if (asked(mesher, face, "garbage")) protocol::send_all(socket, protocol::Bytes(1000, 'x'));
+}
+
 }  // namespace polyslip::mesh::worker

@@ -99,6 +99,61 @@ class GmshMesher : public Mesher {
   GmshAlgorithm algorithm_;
 };
 
+/// Boundary node i is point i + 1, the straight line to the next one curve i + 1: one element each.
+class GmshFaceMesher : public FaceMesher {
+ public:
+  explicit GmshFaceMesher(GmshFaceAlgorithm algorithm) : algorithm_(algorithm) {}
+
+  PlanarMesh mesh(const PlanarProblem& problem) override {
+    gmsh::option::setNumber("Mesh.Algorithm", static_cast<double>(algorithm_));
+    gmsh::option::setNumber("Mesh.MeshSizeMax", problem.element_size);
+    add_polygon(problem);
+    gmsh::model::mesh::generate(2);
+    return read_face(problem);
+  }
+
+ private:
+  static void add_polygon(const PlanarProblem& problem) {
+    gmsh::clear();
+    gmsh::model::add("face");
+    const int n = static_cast<int>(problem.boundary.size());
+    std::vector<int> lines;
+    for (int i = 0; i < n; ++i)
+      gmsh::model::geo::addPoint(problem.boundary[i][0], problem.boundary[i][1], 0,
+                                 std::min(problem.sizes[i], problem.element_size), i + 1);
+    for (int i = 0; i < n; ++i)
+      lines.push_back(gmsh::model::geo::addLine(i + 1, (i + 1) % n + 1, i + 1));
+    for (const int line : lines) gmsh::model::geo::mesh::setTransfiniteCurve(line, 2);
+    gmsh::model::geo::addCurveLoop(lines, 1);
+    gmsh::model::geo::addPlaneSurface({1}, surface_tag);
+    gmsh::model::geo::synchronize();
+  }
+
+  static PlanarMesh read_face(const PlanarProblem& problem) {
+    PlanarMesh mesh;
+    mesh.points = problem.boundary;
+    std::map<std::size_t, int> number;
+    std::vector<std::size_t> tags, elements, corners;
+    std::vector<double> xyz, parameters;
+    for (int i = 0; i < static_cast<int>(problem.boundary.size()); ++i) {
+      gmsh::model::mesh::getNodes(tags, xyz, parameters, 0, i + 1, false, false);
+      number[tags.at(0)] = i;
+    }
+    gmsh::model::mesh::getNodes(tags, xyz, parameters, 2, surface_tag, false, false);
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      number[tags[i]] = static_cast<int>(mesh.points.size());
+      mesh.points.push_back({xyz[3 * i], xyz[3 * i + 1]});
+    }
+    gmsh::model::mesh::getElementsByType(triangle_type, elements, corners, surface_tag);
+    for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+      mesh.triangles.push_back(
+          {number.at(corners[i]), number.at(corners[i + 1]), number.at(corners[i + 2])});
+    return mesh;
+  }
+
+  GmshFaceAlgorithm algorithm_;
+};
+
 }  // namespace
 
 void initialise_gmsh() {
@@ -112,6 +167,10 @@ void initialise_gmsh() {
 
 std::unique_ptr<Mesher> make_gmsh_mesher(GmshAlgorithm algorithm) {
   return std::make_unique<GmshMesher>(algorithm);
+}
+
+std::unique_ptr<FaceMesher> make_gmsh_face_mesher(GmshFaceAlgorithm algorithm) {
+  return std::make_unique<GmshFaceMesher>(algorithm);
 }
 
 VolumeMesh optimise_with_gmsh(const SurfaceMesh& surface, const VolumeMesh& mesh) {

@@ -36,6 +36,12 @@ std::unique_ptr<Mesher> make_mesher(const std::string& name) {
   return nullptr;
 }
 
+std::unique_ptr<FaceMesher> make_face_mesher(const std::string& name) {
+  if (name == "gmsh-frontal") return make_gmsh_face_mesher(GmshFaceAlgorithm::frontal);
+  if (name == "gmsh-delaunay") return make_gmsh_face_mesher(GmshFaceAlgorithm::delaunay);
+  return nullptr;
+}
+
 VolumeMesh without_unused_nodes(const VolumeMesh& mesh, std::size_t kept) {
   std::vector<int> number(mesh.nodes.size(), -1);
   for (const auto& t : mesh.tetrahedra)

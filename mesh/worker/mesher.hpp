@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "mesh/face_mesher.hpp"
 #include "mesh/volume_mesher.hpp"
 
 namespace polyslip::mesh::worker {
@@ -22,6 +23,14 @@ class Mesher {
   virtual bool is_optimised() const { return true; }
 };
 
+class FaceMesher {
+ public:
+  virtual ~FaceMesher() = default;
+  /// Triangles inside the problem's boundary, whose nodes come first. Not validated; inner edges
+  /// may join any nodes. May throw anything; the process must not mesh again then.
+  virtual PlanarMesh mesh(const PlanarProblem& problem) = 0;
+};
+
 /// Before the server forks: libraries initialised, nothing meshed.
 void initialise_gmsh();
 void initialise_netgen();
@@ -35,6 +44,11 @@ std::unique_ptr<Mesher> make_netgen_mesher(NetgenOptimiser optimiser, double sha
 
 /// One of `known_meshers`; nullptr for another name.
 std::unique_ptr<Mesher> make_mesher(const std::string& name);
+
+enum class GmshFaceAlgorithm { delaunay = 5, frontal = 6 };  // values of Mesh.Algorithm
+std::unique_ptr<FaceMesher> make_gmsh_face_mesher(GmshFaceAlgorithm algorithm);
+/// One of `known_face_meshers` that is not ours; nullptr for another name.
+std::unique_ptr<FaceMesher> make_face_mesher(const std::string& name);
 
 /// `mesh` after Gmsh's optimiser; boundary nodes stay.
 VolumeMesh optimise_with_gmsh(const SurfaceMesh& surface, const VolumeMesh& mesh);

@@ -151,7 +151,8 @@ Figures run(const Case& wanted, const Options& options, mesh::MesherPool& pool) 
   f.peak_mb = memory.peak();
   measure_elements(mesh, wanted.element_size, f);
   if (options.worst > 0) list_worst(mesh, options.worst);
-  f.wins = wins_text(meshing.meshers, report.wins);
+  f.wins = wins_text(meshing.meshers, report.wins) + "; " +
+           wins_text(meshing.face_meshers, report.face_wins);
   return f;
 }
 
@@ -209,6 +210,7 @@ int main(int argc, char** argv) {
   app.add_option("--max-edge-length", options.regularisation.max_edge_length, "l_max");
   app.add_option("--progression", options.meshing.progression_factor, "p_l");
   app.add_option("--meshers", options.meshing.meshers)->delimiter(',');
+  app.add_option("--face-meshers", options.meshing.face_meshers)->delimiter(',');
   app.add_option("--mesher-target", options.meshing.mesher_target, "1: each mesher, each grain");
   app.add_flag("--slide,!--no-slide", options.meshing.slide_boundary,
                "nodes slide in faces and along edges");

@@ -141,6 +141,22 @@ TEST(PolycrystalMesh, IsNoWorseThanByItsFirstMesherAlone) {
   EXPECT_GE(quality(by_both).min_radius_ratio, quality(by_one).min_radius_ratio);
 }
 
+TEST(PolycrystalMesh, TakesFacesOfOtherMeshersIfAsked) {
+  const auto pool = start_pool();
+  const auto geometry = geometry_of(polycrystal(20, 4));
+  const int faces = static_cast<int>(geometry.topology.faces.size());
+  MeshingOptions options;
+  MeshingReport report;
+  const Mesh own = mesh_geometry(geometry, options, Vec3::Ones(), *pool, report);
+  EXPECT_EQ(report.face_wins, std::vector<int>{faces});
+  options.face_meshers = {"gmsh-delaunay"};
+  const Mesh other = mesh_geometry(geometry, options, Vec3::Ones(), *pool, report);
+  ASSERT_NO_THROW(check(other));
+  EXPECT_EQ(report.face_wins, std::vector<int>{faces});
+  EXPECT_NE(own.triangles, other.triangles);
+  EXPECT_GT(report.mean_O, 0.8);
+}
+
 TEST(PolycrystalMesh, IsTheSameForAnyNumberOfWorkers) {
   const auto pool = start_pool();
   const auto geometry = geometry_of(polycrystal(12, 4));

@@ -102,8 +102,8 @@ TEST(QualityO, EndsOfTheScale) {
   regular.nodes[0].x() = nan;
   EXPECT_EQ(mesh_quality_O(regular, edge), 0);
   EXPECT_TRUE(std::isnan(min_radius_ratio(regular)));
-  EXPECT_EQ(mesh_quality_O({}, 1), 0);
-  EXPECT_EQ(min_radius_ratio({}), 0);
+  EXPECT_EQ(mesh_quality_O(VolumeMesh{}, 1), 0);
+  EXPECT_EQ(min_radius_ratio(VolumeMesh{}), 0);
 }
 
 }  // namespace
