@@ -14,6 +14,7 @@
 #include "mesh/tess_writer.hpp"
 #include "mesh/volume_change.hpp"
 #include "results/names.hpp"
+#include "results/regularisation_record.hpp"
 
 namespace polyslip::drivers {
 namespace {
@@ -88,8 +89,8 @@ mesh::Tessellation grow_laguerre(const mesh::PolycrystalOptions& options, core::
   return tessellation;
 }
 
-mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
-                        const Progress& progress, core::StageTimes& times) {
+mesh::Tessellation grow(const Options& options, Input& input, const std::string& folder,
+                        core::Log& log, const Progress& progress, core::StageTimes& times) {
   const bool given = input.tessellation.has_value();
   mesh::Tessellation tessellation = [&] {
     progress("tessellating", 0);
@@ -115,6 +116,14 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
   if (change.worst_cell >= 0)
     log.info("regularisation: grains' volumes changed by {:.2g} % rms, grain {}'s by {:+.2g} %",
              100 * change.rms, change.worst_cell + 1, 100 * change.worst);
+  results::write_regularisation({.deletions = report.deleted,
+                                 .short_before = report.short_before,
+                                 .short_after = report.short_after,
+                                 .max_flatness_fault = report.max_flatness_fault,
+                                 .volume_change_rms = change.rms,
+                                 .volume_change_worst = change.worst,
+                                 .worst_grain = change.worst_cell + 1},
+                                folder);
   tessellation.check();
   if (const auto& pairs = tessellation.topology.periodic; !pairs.empty())
     log.info("polycrystal: periodic; {} pairs of faces, {} of edges, {} of vertices",
@@ -122,16 +131,22 @@ mesh::Tessellation grow(const Options& options, Input& input, core::Log& log,
   return tessellation;
 }
 
+std::string wins_text(const std::vector<std::string>& meshers, const std::vector<int>& wins) {
+  std::string text;
+  for (std::size_t i = 0; i < wins.size() && i < meshers.size(); ++i)
+    text += fmt::format("{}{} {}", i ? ", " : "", meshers[i], wins[i]);
+  return text;
+}
+
 void log_meshing(const mesh::Mesh& mesh, const mesh::MeshingReport& report,
-                 const std::vector<std::string>& meshers, core::Log& log) {
+                 const mesh::MeshingOptions& options, core::Log& log) {
   const mesh::QualitySummary quality = mesh::quality(mesh);
   log.info("mesh: {} elements, {} nodes; radius ratio {:.3f} worst, {:.3f} mean; mean O {:.3f}",
            mesh.element_count(), mesh.node_count(), quality.min_radius_ratio,
            quality.mean_radius_ratio, report.mean_O);
-  std::string wins;
-  for (std::size_t i = 0; i < report.wins.size() && i < meshers.size(); ++i)
-    wins += fmt::format("{}{} {}", i ? ", " : "", meshers[i], report.wins[i]);
-  log.info("mesh: grains won by {}", wins);
+  log.info("mesh: grains won by {}", wins_text(options.meshers, report.wins));
+  if (options.face_meshers.size() > 1)
+    log.info("mesh: faces won by {}", wins_text(options.face_meshers, report.face_wins));
   const std::string repairs = mesh::repairs_text(report);
   if (!repairs.empty()) log.info("mesh: {}", repairs);
 }
@@ -212,7 +227,7 @@ mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std:
   }
   const Progress progress(log);
   const mesh::Geometry geometry = [&] {
-    const mesh::Tessellation tessellation = grow(options, input, log, progress, times);
+    const mesh::Tessellation tessellation = grow(options, input, folder, log, progress, times);
     const auto measure = times.measure("output");
     mesh::write_tess(tessellation, results::in_folder(folder, results::tessellation_name),
                      {.orientations = input.orientations,
@@ -229,7 +244,7 @@ mesh::Mesh generate_polycrystal(const Options& options, Input& input, const std:
   for (const auto& [stage, seconds] : report.times.stages()) times.add(stage, seconds);
   times.add("meshing", pool.cpu_seconds() - workers);
   for (const std::string& fault : report.faults) log.warning(fault);
-  log_meshing(mesh, report, options.mesh.meshers, log);
+  log_meshing(mesh, report, options.mesh, log);
   {
     progress("checking", 0);
     const auto measure = times.measure("check");

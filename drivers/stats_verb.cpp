@@ -23,6 +23,7 @@ struct Subject {
   std::optional<mesh::Tessellation> tessellation;
   std::optional<mesh::MeshFile> mesh;
   std::optional<mesh::MeshingOptions> meshing;  ///< of the deck
+  std::optional<results::RegularisationRecord> regularisation;
 };
 
 /// [mesh] of the deck that a folder's mesh was made by; nothing if the mesh came from a file.
@@ -43,7 +44,10 @@ Subject read_folder(const std::string& folder) {
         fmt::format("{}: holds neither {} nor {}; give a folder of polyslip run "
                     "or mesh, or a .tess or .msh file",
                     folder, results::tessellation_name, results::mesh_name(0)));
-  if (fs::exists(tess)) subject.tessellation = mesh::read_tess(tess).tessellation;
+  if (fs::exists(tess)) {
+    subject.tessellation = mesh::read_tess(tess).tessellation;
+    subject.regularisation = results::read_regularisation(folder);
+  }
   if (fs::exists(msh)) {
     subject.meshing = meshing_of(results::in_folder(folder, results::resolved_deck_name));
     subject.mesh = mesh::read_msh(msh);
@@ -98,6 +102,7 @@ void print_statistics(const StatsRequest& request) {
   auto statistics = results::statistics_of(
       subject.tessellation ? mesh::measure(*subject.tessellation) : mesh::measure(*mesh), mesh,
       options_of(request, subject));
+  statistics.regularisation = subject.regularisation;
   if (subject.mesh) {
     statistics.grain_ids = subject.mesh->grain_ids;
     statistics.file_rows = subject.mesh->file_rows;

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 constexpr std::array top_names{resolved_deck_name, log_name,           macro_name,   summary_name,
                                xdmf_name,          tessellation_name,  picture_name, report_name,
-                               profile_name,       petsc_profile_name, texture_name, spreads_name};
+                               profile_name,       petsc_profile_name, texture_name, spreads_name,
+                               regularisation_name};
 
 std::string without_part(std::string name) {
   if (name.ends_with(".part")) name.resize(name.size() - 5);

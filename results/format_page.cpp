@@ -28,6 +28,7 @@ fails when the two differ.
 | `remeshing-001.csv`, ... | what each remeshing changed, grain by grain |
 | `mesh-000.msh`, ... | each mesh, Gmsh format 2.2 (others by `[output] mesh_formats`; formats.md) |
 | `polycrystal.tess` | the regularised tessellation |
+| `regularisation.json` | what the regularisation did: edges deleted and left, largest flatness fault in degrees, relative changes of the grains' volumes (rms, and whose is the worst) |
 | `report.html`, `figures/` | all of it in one page, and its figures as files (report.md) |
 | `polycrystal.png` | the undeformed and the deformed polycrystal in the paper's colours |
 | `summary.json` | what came out, in numbers |

@@ -42,6 +42,7 @@ inline constexpr std::string_view petsc_profile_name = "profile-petsc.txt";
 inline constexpr std::string_view xdmf_name = "results.xdmf";
 inline constexpr std::string_view index_name = "index.json";  // in results/
 inline constexpr std::string_view tessellation_name = "polycrystal.tess";
+inline constexpr std::string_view regularisation_name = "regularisation.json";
 inline constexpr std::string_view picture_name = "polycrystal.png";
 inline constexpr std::string_view report_name = "report.html";
 inline constexpr std::string_view figures_folder = "figures";  // of the report

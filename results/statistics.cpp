@@ -283,6 +283,10 @@ std::string table_text(const Statistics& s, const std::string& source) {
                     number(d.mean), number(d.deviation), number(d.min), number(d.percentile(10)),
                     number(d.percentile(50)), number(d.percentile(90)), number(d.max));
   }
+  if (const auto& r = s.regularisation; r && r->worst_grain > 0)
+    text += fmt::format(
+        "\nregularisation changed the grains' volumes by {:.2g} % rms, grain {}'s by {:+.2g} %\n",
+        100 * r->volume_change_rms, r->worst_grain, 100 * r->volume_change_worst);
   if (s.elements == 0) return text;
   text += "\nradius ratios below";
   for (const auto& [bound, count] : s.quantity("radius_ratio").counts_below)
@@ -313,6 +317,7 @@ std::string json_text(const Statistics& s, const std::string& source) {
     j["element_size_asked_from"] = text_of(s.options.element_size_source);
     j["O_over_all_elements"] = {{"O_dis", s.O_dis}, {"O_size", s.O_size}, {"O", s.O}};
   }
+  if (s.regularisation) j["regularisation"] = to_json(*s.regularisation);
   for (const Quantity& q : s.quantities) {
     const Distribution& d = q.distribution;
     Json one = {{"label", q.label},

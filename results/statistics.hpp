@@ -8,6 +8,7 @@
 
 #include "mesh/measures.hpp"
 #include "results/distribution.hpp"
+#include "results/regularisation_record.hpp"
 
 namespace polyslip::results {
 
@@ -41,6 +42,7 @@ struct Statistics {
   int faces = 0, edges = 0, vertices = 0;  ///< translates of a periodic polycrystal once
   long elements = 0, nodes = 0;            ///< 0 without a mesh
   std::vector<Quantity> quantities;
+  std::optional<RegularisationRecord> regularisation;  ///< of a folder of polyslip run or mesh
   /// The file's own numbers of grains and elements, [grain] and [element]; empty: from 1.
   std::vector<int> grain_ids, file_rows;
   std::vector<std::string> domain_faces;  ///< names, as in Domain::faces; empty: numbers

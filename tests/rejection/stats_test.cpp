@@ -87,6 +87,7 @@ TEST(Stats, OfAFolderOfAMesh) {
   EXPECT_NE(all.out.find("c_l = 1.5 (some grains their own), from the deck"), std::string::npos)
       << all.out;
   EXPECT_NE(all.out.find("radius ratio"), std::string::npos) << all.out;
+  EXPECT_TRUE(std::filesystem::exists(sandbox.path() / "out/regularisation.json"));
   std::filesystem::remove(sandbox.path() / "out/mesh-000.msh");
   const Outcome rest = run_polyslip({"stats", "out"}, sandbox.path());
   EXPECT_EQ(rest.code, 0) << rest.err;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
@@ -100,6 +101,38 @@ TEST(StatisticsFiles, AreTablesPlotsAndJson) {
   EXPECT_EQ(json["quantities"]["grain_volume"]["percentiles"]["50"].get<double>(),
             s.quantity("grain_volume").distribution.percentile(50));
   EXPECT_EQ(json["elements"], s.elements);
+}
+
+TEST(StatisticsFiles, SayWhatTheRegularisationDidToVolumes) {
+  const tests::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "run");
+  EXPECT_FALSE(read_regularisation(folder / "run"));
+  write_regularisation({.deletions = 7,
+                        .short_before = 9,
+                        .short_after = 2,
+                        .max_flatness_fault = 19.5,
+                        .volume_change_rms = 0.027,
+                        .volume_change_worst = -0.31,
+                        .worst_grain = 5},
+                       folder / "run");
+  auto statistics = statistics_of(mesh::measure(cubes()), nullptr, {});
+  EXPECT_EQ(table_text(statistics, "run").find("regularisation"), std::string::npos);
+  statistics.regularisation = read_regularisation(folder / "run");
+  EXPECT_NE(
+      table_text(statistics, "run")
+          .find("regularisation changed the grains' volumes by 2.7 % rms, grain 5's by -31 %"),
+      std::string::npos)
+      << table_text(statistics, "run");
+  const auto json = nlohmann::json::parse(json_text(statistics, "run"))["regularisation"];
+  EXPECT_EQ(json["deletions"], 7);
+  EXPECT_EQ(json["short_edges_before"], 9);
+  EXPECT_EQ(json["short_edges_after"], 2);
+  EXPECT_EQ(json["max_flatness_fault"], 19.5);
+  EXPECT_EQ(json["volume_change_rms"], 0.027);
+  EXPECT_EQ(json["volume_change_worst"], -0.31);
+  EXPECT_EQ(json["worst_grain"], 5);
+  std::ofstream(folder / "run/regularisation.json") << "{}";
+  EXPECT_THROW(read_regularisation(folder / "run"), core::InputError);
 }
 
 TEST(StatisticsFiles, OfAnEarlierCallStay) {
