@@ -55,5 +55,14 @@ TEST(Inputs, AMeshFileRunsAndIsRemeshed) {
   expect_run(sandbox.path() / "run");
 }
 
+/// 20 grains in 795 elements of Neper's, with its orientations, as they came.
+TEST(Inputs, AMeshOfNepersRunsAndIsRemeshed) {
+  Sandbox sandbox;
+  fs::copy_file(POLYSLIP_SOURCE_DIR "/tests/data/fepx/n20_coarse.msh.gz",
+                sandbox.path() / "n20.msh.gz");
+  run_deck(sandbox, 1, "[mesh]\nfile = \"n20.msh.gz\"\nelement_size = 1.0\n" + loading, "run");
+  expect_run(sandbox.path() / "run");
+}
+
 }  // namespace
 }  // namespace polyslip::tests
