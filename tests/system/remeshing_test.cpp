@@ -149,8 +149,8 @@ TEST(Remeshing, ThatFailsLeavesTheOldMesh) {
   for (const MacroRow& row : read_macro(sandbox.path() / "run")) EXPECT_FALSE(row.remeshed);
 }
 
-/// No step converges and no mesh can be made: the run stops, says why, and can go on with
-/// the smaller step that it came to.
+/// No step converges and no mesh can be made: the run stops, says why, and can go on with the
+/// smallest step allowed.
 TEST(Remeshing, ThatFailsWhereNoStepConvergesStopsTheRun) {
   const Sandbox sandbox;
   make_first_mesh(sandbox);
