@@ -27,7 +27,7 @@ struct RemeshingOptions {
   double orthotropic_share = 1;
   /// Share of the lengthening that element sizes follow: 0 keeps their size along a direction in
   /// which the polycrystal was drawn out (the paper), 1 the number of elements.
-  double lengthening_share = 0;
+  double lengthening_share = 0.5;
   TransportOptions transport{"corrected", "zero"};  ///< docs/remeshing-accuracy.md says why
   // Limits of a remeshing; beyond them the run stops and names the grain.
   double max_grain_volume_change = 0.005;  ///< relative
