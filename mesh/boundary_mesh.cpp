@@ -28,6 +28,16 @@ struct Before {
   }
 };
 
+/// Integral of the normal over a face, its triangles straight: zero of what has no area.
+Vec3 area_vector(const FaceShape& shape) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& t : shape.triangles) {
+    const Vec3& a = shape.points[t[0]];
+    sum += (shape.points[t[1]] - a).cross(shape.points[t[2]] - a) / 2;
+  }
+  return sum;
+}
+
 }  // namespace
 
 BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& options,
@@ -63,32 +73,38 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
     end_sizes_.push_back({sizes[edge.vertices[0]], sizes[edge.vertices[1]]});
 }
 
+/// The plane that all points of a domain face lie in, if they do: its own, moved along its normal,
+/// or the one that the face's area has turned to (in simple shear).
+std::optional<Plane> BoundaryMesher::common_plane(int domain_face) const {
+  const Plane& own = geometry_.domain.faces[domain_face].plane;
+  const double rounding = flat * geometry_.size.maxCoeff();
+  Vec3 area = Vec3::Zero();
+  for (std::size_t f = 0; f < geometry_.faces.size(); ++f)
+    if (geometry_.topology.faces[f].domain_face == domain_face)
+      area += area_vector(geometry_.faces[f]);
+  for (const Vec3& normal : {own.normal, Vec3(area.normalized())}) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::size_t f = 0; f < geometry_.faces.size(); ++f) {
+      if (geometry_.topology.faces[f].domain_face != domain_face) continue;
+      for (const auto& x : geometry_.faces[f].points) {
+        low = std::min(low, normal.dot(x));
+        high = std::max(high, normal.dot(x));
+      }
+    }
+    if (!(high - low <= rounding)) continue;
+    // Of the values that rounding gives: the plane of the undeformed domain if it is among them.
+    const double margin = geometry_.from_mesh ? 0 : rounding;
+    const bool kept =
+        normal == own.normal && own.offset >= low - margin && own.offset <= high + margin;
+    return Plane{normal, kept ? own.offset : low};
+  }
+  return std::nullopt;
+}
+
 void BoundaryMesher::find_planes() {
   const auto& topology = geometry_.topology;
-  const auto& domain = geometry_.domain.faces;
-  struct Range {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-  };
-  std::vector<Range> ranges(domain.size());
-  for (std::size_t f = 0; f < topology.faces.size(); ++f) {
-    const int d = topology.faces[f].domain_face;
-    if (d < 0) continue;
-    for (const auto& x : geometry_.faces[f].points) {
-      const double offset = domain[d].plane.normal.dot(x);
-      ranges[d].low = std::min(ranges[d].low, offset);
-      ranges[d].high = std::max(ranges[d].high, offset);
-    }
-  }
-  planes_.assign(domain.size(), std::nullopt);
-  for (std::size_t d = 0; d < domain.size(); ++d) {
-    const auto [low, high] = ranges[d];
-    if (!(high - low <= flat * geometry_.size.maxCoeff())) continue;
-    // Of the values that rounding gives: the plane of the undeformed domain if it is among them.
-    Plane plane = domain[d].plane;
-    const double rounding = geometry_.from_mesh ? 0 : flat * geometry_.size.maxCoeff();
-    if (plane.offset < low - rounding || plane.offset > high + rounding) plane.offset = low;
-    planes_[d] = plane;
-  }
+  for (std::size_t d = 0; d < geometry_.domain.faces.size(); ++d)
+    planes_.push_back(common_plane(static_cast<int>(d)));
   vertex_planes_ = domain_faces_of_vertices(topology);
   edge_planes_ = domain_faces_of_edges(topology);
   for (int v = 0; v < topology.vertex_count; ++v) keep_in_planes(vertices_[v], vertex_planes_[v]);

@@ -110,6 +110,7 @@ class BoundaryMesher {
   double distortion(int face) const;
 
  private:
+  std::optional<Plane> common_plane(int domain_face) const;
   void find_planes();
   /// Puts a point on those of the domain faces that are planes.
   void keep_in_planes(core::Vec3& x, std::span<const int> domain_faces) const;

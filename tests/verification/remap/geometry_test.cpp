@@ -88,6 +88,38 @@ TEST(RemeshingGeometry, OfASmallPolycrystal) {
   expect_limits(outcome, 10, 0.5);
 }
 
+/// Sides that lean stay as plane as upright ones.
+TEST(RemeshingGeometry, FacesTurnedBySimpleShearStayPlane) {
+  const auto pool = start_pool();
+  auto tessellation = mesh::voronoi_tessellation({.grains = 10, .seed = 3});
+  mesh::regularise(tessellation, {});
+  mesh::MeshingOptions meshing;
+  meshing.element_size = 0.7;
+  mesh::MeshingReport report;
+  mesh::Mesh mesh =
+      mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), *pool, report);
+  constexpr double shear = 0.6, bump = 0.1, pi = 3.14159265358979;
+  for (Vec3& x : mesh.nodes) {
+    const Vec3 s = (pi * x.cwiseQuotient(mesh.size)).array().sin();
+    x += bump * s.prod() * Vec3(1, -0.5, 0.7);
+    x[0] += shear * x[2];
+  }
+  const mesh::Mesh fresh =
+      mesh::mesh_geometry(mesh::geometry_of(mesh), meshing, meshing_scale(mesh, {}), *pool, report);
+  ASSERT_NO_THROW(mesh::check(fresh));
+  int counted = 0;
+  for (std::size_t i = 0; i < fresh.triangles.size(); ++i) {
+    const int face = fresh.topology.faces[fresh.triangle_face[i]].domain_face;
+    if (face != 0 && face != 1) continue;
+    for (const int n : fresh.triangles[i]) {
+      const Vec3& x = fresh.nodes[n];
+      EXPECT_NEAR(x[0] - shear * x[2], face == 0 ? 0 : fresh.size[0], 1e-12);
+      ++counted;
+    }
+  }
+  EXPECT_GT(counted, 100);
+}
+
 TEST(RemeshingGeometry, SlowTwentyPolycrystals) {
   const auto pool = start_pool();
   Outcome outcome;
