@@ -64,7 +64,7 @@ std::unique_ptr<Sandbox> Folder::made_;
 
 TEST_F(Folder, WithResultsOfAnEarlierRun) {
   const std::string line =
-      "run: holds the results of an earlier run (checkpoints/checkpoint-0001.h5 and 12 more "
+      "run: holds the results of an earlier run (checkpoints/checkpoint-0001.h5 and 13 more "
       "files); give another folder with --out, go on with it by --restart, or replace it with "
       "--overwrite";
   rejected({"run", "deck.toml", "--out", "run"}, line);

@@ -134,6 +134,7 @@ slide_boundary = false
 mesher_target = 0.8
 progression_factor = 1.5
 meshers = ["netgen"]
+face_meshers = ["gmsh-frontal"]
 mesher_timeout = 30
 [orientations]
 convention = "rodrigues"
@@ -248,6 +249,7 @@ TEST(Options, EveryKeyReachesItsOption) {
   EXPECT_EQ(o.mesh.mesher_target, 0.8);
   EXPECT_EQ(o.mesh.progression_factor, 1.5);
   EXPECT_EQ(o.mesh.meshers, std::vector<std::string>{"netgen"});
+  EXPECT_EQ(o.mesh.face_meshers, std::vector<std::string>{"gmsh-frontal"});
   EXPECT_EQ(o.mesh.mesher_timeout, 30);
   EXPECT_EQ(o.orientations.convention, "rodrigues");
   EXPECT_EQ(o.material.c11, 1);
