@@ -83,17 +83,31 @@ void RunJob::record(const solver::StepRecord& step) {
 }
 
 void RunJob::advance() {
+  // A new mesh has a step's worth of strain behind it: one made here would be the same again.
+  const bool remeshable =
+      options_.remeshing.automatic && model_->strain() > progress_.last_attempt + same_strain;
+  const bool settled = model_->strain() >= progress_.last_attempt + options_.remeshing.min_interval;
   try {
-    record(take_step());
+    record(take_step(remeshable && settled ? cuts_before_a_new_mesh : solver::any_cuts));
   } catch (const core::RecoverableError& error) {
-    // A new mesh has a step's worth of strain behind it: one made here would be the same again.
-    const bool tried_here = model_->strain() <= progress_.last_attempt + same_strain;
-    if (!options_.remeshing.automatic || tried_here) throw;
+    if (!remeshable) {
+      stop_on_the_old_mesh();
+      throw;
+    }
     progress_.due = {failed_step, error.what()};
     if (!stored_here()) store();
     write_checkpoint();
     remesh(model_->snapshot());
   }
+}
+
+void RunJob::stop_on_the_old_mesh() const {
+  const auto& failed = progress_.failed_remeshings;
+  if (failed.empty() || std::abs(failed.back().strain - model_->strain()) > same_strain) return;
+  throw core::RecoverableError(fmt::format(
+      "strain {:.6g}: no step converges on the old mesh, and no new one could be made; last "
+      "failure: {}",
+      model_->strain(), failed.back().reason));
 }
 
 /// What the schedule has here; the end comes with a target of stress or time too.

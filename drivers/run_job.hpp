@@ -25,6 +25,10 @@ namespace polyslip::drivers {
 /// Names of what a checkpoint keeps of a run, in its snapshot's provenance.
 inline const std::string progress_key = "progress", deck_text_key = "deck";
 
+/// A step that fails at a thirtieth of its size does so at any, or is followed by others as small:
+/// another mesh is tried.
+inline constexpr int cuts_before_a_new_mesh = 5;
+
 class RunJob {
  public:
   RunJob(MPI_Comm comm, const RunRequest& request, mesh::MesherPool& pool);
@@ -54,7 +58,9 @@ class RunJob {
   /// One step, or a remeshing and a step, because none converged.
   void advance();
   /// One step; of one that fails the attempts are counted.
-  solver::StepRecord take_step(int max_cuts = solver::any_cuts);
+  solver::StepRecord take_step(int max_cuts);
+  /// RecoverableError if a remeshing has failed where now no step converges.
+  void stop_on_the_old_mesh() const;
   double next_target() const;
   /// Counts and writes a step.
   void record(const solver::StepRecord& step);

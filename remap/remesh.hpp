@@ -47,8 +47,8 @@ struct BodyStatistics {
 struct RemeshReport {
   double strain = 0;
   int elements_before = 0, elements_after = 0;
-  double min_radius_ratio_before = 0, min_radius_ratio_after = 0;
-  double max_grain_volume_change = 0;  ///< relative
+  double min_radius_ratio_before = 0, min_radius_ratio_after = 0;  ///< frame scaled to isotropy
+  double max_grain_volume_change = 0;                              ///< relative
   double rms_grain_volume_change = 0;
   double max_mean_rotation = 0, mean_mean_rotation = 0;  ///< of grains' mean orientations, degrees
   double max_spread_change = 0;                          ///< of a grain, degrees
