@@ -115,10 +115,10 @@ std::string first_inversion(const Run& run) {
     const auto s = results::read_state(run.states.path(state));
     const auto frame = remap::isotropy_frame(remap::initial_positions(s), s.mesh.nodes);
     if (remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, {}, frame, {}, 2).worst_jacobian <= 0)
-      return fmt::format("between {:g} and {:g}", last, state.strain);
+      return fmt::format("first between {:g} and {:g}", last, state.strain);
     last = state.strain;
   }
-  return fmt::format("not up to {:g}", last);
+  return fmt::format("first beyond {:g}", last);
 }
 
 results::Series spreads(const Run& run, double strain, const std::string& label) {
@@ -157,8 +157,8 @@ std::string numbers(const Run& often, const Run& seldom, const Run& never, const
                     double early, double end) {
   const auto first = results::read_state(often.states.path(often.states.states().front()));
   std::string text = fmt::format(
-      "{} grains, {} elements at the start; the mesh that is never replaced has its first inverted "
-      "element {}.\n\n| | strain | mean rotation | worst | mean spread | spreads, rms | stress |\n"
+      "{} grains, {} elements at the start; of the mesh that is never replaced an element "
+      "inverts {}.\n\n| | strain | mean rotation | worst | mean spread | spreads, rms | stress |\n"
       "|---|---|---|---|---|---|---|\n",
       first.mesh.topology.cell_count(), first.mesh.element_count(), first_inversion(never));
   text += row("often against seldom", end, difference(often, seldom, end));
