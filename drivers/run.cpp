@@ -142,7 +142,6 @@ mesh::Snapshot RunJob::begin() {
 
 void RunJob::build_model(mesh::Snapshot snapshot) {
   model_.reset();  // not two at a time
-  watch(snapshot);
   model_ = std::make_unique<solver::Model>(
       comm_, std::move(snapshot), *law_, options_.loading, options_.solver,
       [this](const std::string& line) { log_.info(line); }, request_.profile ? &profile_ : nullptr);

@@ -9,7 +9,6 @@
 #include "core/log.hpp"
 #include "core/timer.hpp"
 #include "drivers/generate.hpp"
-#include "drivers/mesh_watch.hpp"
 #include "drivers/options.hpp"
 #include "drivers/remeshing_attempts.hpp"
 #include "drivers/run.hpp"
@@ -76,11 +75,10 @@ class RunJob {
   void write_checkpoint();
 
   // run_remeshing.cpp
-  /// Begins to follow the wear of the mesh that the snapshot, on rank 0, has.
-  void watch(const mesh::Snapshot& snapshot);
   /// Notes what the mesh is like as it left the mesher.
   void measure_new_mesh();
-  remap::Wear wear();
+  /// Of the present mesh; the same on every rank.
+  remap::Wear wear() const;
   /// Why the elements are worn; empty if they are not.
   std::string worn_elements();
   /// `progress_.due`, from the state `old` (on rank 0), of which a checkpoint was written. True
@@ -107,7 +105,6 @@ class RunJob {
   std::unique_ptr<material::CrystalLaw> law_;
   solver::Profile profile_;
   std::unique_ptr<solver::Model> model_;
-  std::optional<MeshWatch> watch_;  ///< on rank 0
   std::optional<results::MacroCsv> macro_;
   std::optional<results::StateSeries> states_;
   RunProgress progress_;

@@ -1,5 +1,6 @@
 // When a run remeshes, and what it does if that fails.
 
+#include <span>
 #include <utility>
 
 #include "core/error.hpp"
@@ -10,6 +11,7 @@
 #include "drivers/run_job.hpp"
 #include "drivers/run_report.hpp"
 #include "results/names.hpp"
+#include "solver/exchange.hpp"
 #include "solver/snapshot_fields.hpp"
 
 namespace polyslip::drivers {
@@ -26,23 +28,18 @@ constexpr double first_step_share = 0.25;
 
 }  // namespace
 
-void RunJob::watch(const mesh::Snapshot& snapshot) {
-  on_root(comm_, [&] {
-    int ranks = 1;
-    MPI_Comm_size(comm_, &ranks);
-    // The other ranks wait, and keep their processors busy.
-    if (!watch_)
-      watch_.emplace(options_.remeshing, ranks > 1 ? 1 : core::thread_count(request_.jobs));
-    watch_->watch(snapshot);
-  });
-}
-
-remap::Wear RunJob::wear() {
-  const auto positions = model_->positions();
-  const auto rates = model_->departure_rates();
-  remap::Wear wear;
-  on_root(comm_, [&] { wear = watch_->measure(positions, rates); });
-  return wear;
+/// Each rank measures its own elements.
+remap::Wear RunJob::wear() const {
+  const solver::MeshPart part = model_->part();
+  const auto owned = [&](const std::vector<core::Vec3>& values) {
+    return std::span(values).first(part.owned_nodes);
+  };
+  const core::Mat3 frame = remap::isotropy_frame(
+      solver::all_gather(comm_, remap::frame_moments(owned(part.initial), owned(part.positions))));
+  const int threads = solver::size_of(comm_) > 1 ? 1 : core::thread_count(request_.jobs);
+  return remap::whole_wear(
+      solver::all_gather(comm_, remap::measure_part(part.elements, part.positions, part.rates,
+                                                    frame, options_.remeshing.wear, threads)));
 }
 
 void RunJob::measure_new_mesh() {

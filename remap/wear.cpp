@@ -108,27 +108,6 @@ class ElementGauge {
 
 }  // namespace
 
-Mat3 isotropy_frame(std::span<const Vec3> initial, std::span<const Vec3> current) {
-  if (initial.size() != current.size() || current.empty())
-    throw core::InternalError("isotropy_frame: positions of different nodes");
-  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
-  for (std::size_t n = 0; n < current.size(); ++n) {
-    from += current[n];
-    to += initial[n];
-  }
-  from /= static_cast<double>(current.size());
-  to /= static_cast<double>(current.size());
-  Mat3 cross = Mat3::Zero(), own = Mat3::Zero();
-  for (std::size_t n = 0; n < current.size(); ++n) {
-    cross += (initial[n] - to) * (current[n] - from).transpose();
-    own += (current[n] - from) * (current[n] - from).transpose();
-  }
-  const Mat3 frame = cross * own.inverse();
-  if (!frame.allFinite() || !(frame.determinant() > 0))
-    throw core::InternalError("isotropy_frame: the nodes do not span a body");
-  return frame;
-}
-
 std::vector<Vec3> initial_positions(const mesh::Snapshot& snapshot) {
   std::vector<Vec3> initial = snapshot.mesh.nodes;
   const mesh::Field* u = snapshot.find("displacement", mesh::Location::node);
@@ -138,9 +117,9 @@ std::vector<Vec3> initial_positions(const mesh::Snapshot& snapshot) {
   return initial;
 }
 
-Wear measure_wear(std::span<const std::array<int, 10>> tetrahedra, std::span<const Vec3> positions,
-                  std::span<const Vec3> rates, const Mat3& frame, const WearOptions& options,
-                  int threads) {
+PartWear measure_part(std::span<const std::array<int, 10>> tetrahedra,
+                      std::span<const Vec3> positions, std::span<const Vec3> rates,
+                      const Mat3& frame, const WearOptions& options, int threads) {
   const ElementGauge gauge(positions, rates, frame, options.inversion_strain);
   std::vector<ElementWear> elements(tetrahedra.size());
   constexpr std::size_t block = 1024;
@@ -148,18 +127,37 @@ Wear measure_wear(std::span<const std::array<int, 10>> tetrahedra, std::span<con
     const std::size_t end = std::min(elements.size(), (b + 1) * block);
     for (std::size_t e = b * block; e < end; ++e) elements[e] = gauge(tetrahedra[e]);
   });
+  PartWear part;
+  part.elements = static_cast<std::int64_t>(elements.size());
+  for (const ElementWear& e : elements) {
+    part.worst_radius_ratio = mesh::min_or_nan(part.worst_radius_ratio, e.radius_ratio);
+    part.worst_jacobian = mesh::min_or_nan(part.worst_jacobian, e.jacobian);
+    part.inversion_strain = mesh::min_or_nan(part.inversion_strain, e.inversion_strain);
+    part.poor += !(e.radius_ratio >= options.poor_radius_ratio);
+  }
+  return part;
+}
+
+Wear whole_wear(std::span<const PartWear> parts) {
   Wear wear;
   wear.inversion_strain = infinity;
-  std::size_t poor = 0;
-  for (const ElementWear& e : elements) {
-    wear.worst_radius_ratio = mesh::min_or_nan(wear.worst_radius_ratio, e.radius_ratio);
-    wear.worst_jacobian = mesh::min_or_nan(wear.worst_jacobian, e.jacobian);
-    wear.inversion_strain = mesh::min_or_nan(wear.inversion_strain, e.inversion_strain);
-    poor += !(e.radius_ratio >= options.poor_radius_ratio);
+  std::int64_t elements = 0, poor = 0;
+  for (const PartWear& part : parts) {
+    wear.worst_radius_ratio = mesh::min_or_nan(wear.worst_radius_ratio, part.worst_radius_ratio);
+    wear.worst_jacobian = mesh::min_or_nan(wear.worst_jacobian, part.worst_jacobian);
+    wear.inversion_strain = mesh::min_or_nan(wear.inversion_strain, part.inversion_strain);
+    elements += part.elements;
+    poor += part.poor;
   }
-  if (!elements.empty())
-    wear.poor_share = static_cast<double>(poor) / static_cast<double>(elements.size());
+  if (elements > 0) wear.poor_share = static_cast<double>(poor) / static_cast<double>(elements);
   return wear;
+}
+
+Wear measure_wear(std::span<const std::array<int, 10>> tetrahedra, std::span<const Vec3> positions,
+                  std::span<const Vec3> rates, const Mat3& frame, const WearOptions& options,
+                  int threads) {
+  const PartWear all = measure_part(tetrahedra, positions, rates, frame, options, threads);
+  return whole_wear({&all, 1});
 }
 
 std::optional<std::string> worn(const Wear& fresh, const Wear& now, const WearOptions& options) {

@@ -3,6 +3,8 @@
 // (section 2.3 of the paper leaves that to the user).
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -10,6 +12,7 @@
 
 #include "core/types.hpp"
 #include "mesh/snapshot.hpp"
+#include "remap/isotropy_frame.hpp"
 
 namespace polyslip::remap {
 
@@ -37,10 +40,16 @@ struct WearOptions {
   double inversion_strain = 0.03;     ///< projected strain until the first element inverts
 };
 
-/// The linear part A of the least-squares fit `initial = A current + b` over all nodes: the inverse
-/// of the mean deformation gradient. The frame x_scaled = A x is the one scaled back to isotropy,
-/// in which a homogeneous motion does nothing. Throws InternalError for nodes in a plane.
-core::Mat3 isotropy_frame(std::span<const core::Vec3> initial, std::span<const core::Vec3> current);
+/// What the elements of one part of a mesh (a rank's, say) add to the wear of the whole.
+struct PartWear {
+  double worst_radius_ratio = 1, worst_jacobian = 1;  ///< see Wear
+  double inversion_strain = std::numeric_limits<double>::infinity();
+  std::int64_t elements = 0, poor = 0;
+};
+
+/// Of all parts together; what is not a number in one is none in the whole. Without elements
+/// nothing is worn.
+Wear whole_wear(std::span<const PartWear> parts);
 
 /// Positions at zero strain of a snapshot's nodes: current ones less the displacement.
 std::vector<core::Vec3> initial_positions(const mesh::Snapshot& snapshot);
@@ -48,6 +57,10 @@ std::vector<core::Vec3> initial_positions(const mesh::Snapshot& snapshot);
 /// Of ten-node elements with nodes at `positions`; `rates`: change of the positions per unit
 /// strain, but for a homogeneous motion (which changes no ratio of det J), or empty if it is not
 /// known.
+PartWear measure_part(std::span<const std::array<int, 10>> tetrahedra,
+                      std::span<const core::Vec3> positions, std::span<const core::Vec3> rates,
+                      const core::Mat3& frame, const WearOptions& options, int threads);
+/// The same of a mesh in one part.
 Wear measure_wear(std::span<const std::array<int, 10>> tetrahedra,
                   std::span<const core::Vec3> positions, std::span<const core::Vec3> rates,
                   const core::Mat3& frame, const WearOptions& options, int threads);

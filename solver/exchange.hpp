@@ -74,6 +74,15 @@ std::vector<std::vector<T>> gather(MPI_Comm comm, const std::vector<T>& mine) {
   return detail::from_bytes<T>(detail::gather_bytes(comm, detail::to_bytes(mine)));
 }
 
+/// Every rank's `mine` on every rank. Collective.
+template <class T>
+std::vector<T> all_gather(MPI_Comm comm, const T& mine) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  std::vector<T> all(static_cast<std::size_t>(size_of(comm)));
+  MPI_Allgather(&mine, sizeof(T), MPI_BYTE, all.data(), sizeof(T), MPI_BYTE, comm);
+  return all;
+}
+
 /// Sends parts[i] to ranks[i] and returns what they sent, in the same order. Both sides must name
 /// each other. Collective among the ranks named.
 template <class T>

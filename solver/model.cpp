@@ -32,6 +32,15 @@ std::vector<int> element_ranks(const mesh::Snapshot& snapshot, int ranks) {
   return partition_elements(snapshot.mesh, ranks);
 }
 
+/// [n][3] as vectors.
+std::vector<core::Vec3> vectors(const std::vector<double>& values) {
+  std::vector<core::Vec3> out;
+  out.reserve(values.size() / 3);
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3)
+    out.emplace_back(values[i], values[i + 1], values[i + 2]);
+  return out;
+}
+
 core::Vec3 box_size(MPI_Comm comm, const mesh::Snapshot& snapshot) {
   core::Vec3 size;
   for (int i = 0; i < 3; ++i) size[i] = broadcast(comm, snapshot.mesh.size[i]);
@@ -330,14 +339,17 @@ struct Model::Impl {
     }
   }
 
-  /// [nodes] on rank 0 of [local_nodes][3]; empty elsewhere.
-  std::vector<core::Vec3> gathered(const std::vector<double>& values) const {
-    const auto all = distribution.gather_nodes(values, 3);
-    std::vector<core::Vec3> out;
-    out.reserve(all.size() / 3);
-    for (std::size_t i = 0; i + 2 < all.size(); i += 3)
-      out.emplace_back(all[i], all[i + 1], all[i + 2]);
-    return out;
+  MeshPart part() const {
+    const LocalMesh& local = distribution.local();
+    MeshPart part{local.elements,
+                  static_cast<std::size_t>(local.owned_nodes),
+                  {},
+                  vectors(now.x),
+                  vectors(predictor.rate())};
+    part.initial = part.positions;
+    const auto u = vectors(body.displacement);
+    for (std::size_t n = 0; n < u.size(); ++n) part.initial[n] -= u[n];
+    return part;
   }
 
   std::vector<FieldPart> fields() const {
@@ -347,10 +359,10 @@ struct Model::Impl {
 
   /// The snapshot on rank 0, but for the values of these fields.
   mesh::Snapshot outline(const std::vector<FieldPart>& parts) const {
-    const auto x = gathered(now.x);
+    auto x = vectors(distribution.gather_nodes(now.x, 3));
     mesh::Snapshot out = base;
     if (!root) return out;
-    out.mesh.nodes = x;
+    out.mesh.nodes = std::move(x);
     out.strain = strain;
     out.time = time;
     out.history[field::step_history] = control.history();
@@ -411,10 +423,7 @@ StepRecord Model::step(double target_strain, int max_cuts) {
 }
 void Model::relax() { impl_->relax(); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
-std::vector<core::Vec3> Model::positions() const { return impl_->gathered(impl_->now.x); }
-std::vector<core::Vec3> Model::departure_rates() const {
-  return impl_->gathered(impl_->predictor.rate());
-}
+MeshPart Model::part() const { return impl_->part(); }
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
 void Model::show(const SnapshotUse& use) const { impl_->show(use); }
 

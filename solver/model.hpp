@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,16 @@ class StepFailure : public core::RecoverableError {
 
 /// A step may be cut as often as min_strain_increment lets it.
 inline constexpr int any_cuts = std::numeric_limits<int>::max();
+
+/// A rank's elements and their nodes, first those that this rank owns.
+struct MeshPart {
+  std::span<const std::array<int, 10>> elements;      ///< numbers of the nodes here
+  std::size_t owned_nodes = 0;                        ///< each node of the body is owned once
+  std::vector<core::Vec3> initial, positions, rates;  ///< [nodes] at zero strain; now; change of
+                                                      ///< the positions per unit strain in the last
+                                                      ///< step beyond the homogeneous motion, zero
+                                                      ///< at the start of a stage
+};
 
 using SnapshotUse = std::function<void(mesh::Snapshot& outline, const mesh::FieldReader& read)>;
 
@@ -82,11 +93,8 @@ class Model {
   void relax();
   /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.
   void drop_setup();
-  /// Of the nodes, on rank 0; empty elsewhere.
-  std::vector<core::Vec3> positions() const;
-  /// Change of the positions per unit strain in the last step, beyond the homogeneous motion; zero
-  /// at the start of a stage. On rank 0; empty elsewhere.
-  std::vector<core::Vec3> departure_rates() const;
+  /// This rank's part of the mesh and how it moves. Valid until the next step.
+  MeshPart part() const;
   /// Mesh, state, derived fields and history on rank 0; an empty snapshot elsewhere.
   mesh::Snapshot snapshot() const;
   /// Calls `use` on rank 0 with the snapshot's outline and a reader of its fields, which the other

@@ -47,6 +47,51 @@ TEST(IsotropyFrame, NeedsABody) {
   EXPECT_THROW(isotropy_frame({}, {}), core::InternalError);
 }
 
+/// The motion is not homogeneous, so that the fit weighs all nodes; one part is empty, as that of a
+/// rank without nodes.
+TEST(IsotropyFrame, OfPartsIsThatOfTheWhole) {
+  const mesh::Mesh mesh = box();
+  auto now = moved(mesh.nodes, gradient(), {300, -100, 200});
+  for (Vec3& x : now) x += 0.1 * Vec3(std::sin(3 * x.y()), std::cos(2 * x.z()), std::sin(x.x()));
+  const std::span<const Vec3> from(mesh.nodes), to(now);
+  const std::size_t cut = from.size() / 3;
+  const std::vector<FrameMoments> parts{frame_moments(from.first(cut), to.first(cut)),
+                                        frame_moments({}, {}),
+                                        frame_moments(from.subspan(cut), to.subspan(cut))};
+  EXPECT_LT((isotropy_frame(parts) - isotropy_frame(mesh.nodes, now)).norm(), 1e-12);
+}
+
+TEST(Wear, OfPartsIsThatOfTheWhole) {
+  const mesh::Mesh mesh = box();
+  auto now = mesh.nodes;
+  const auto& t = mesh.tetrahedra[5];
+  now[t[4]] += 0.1 * (now[t[0]] - now[t[1]]);
+  std::vector<Vec3> rates(now.size(), Vec3::Zero());
+  rates[t[0]] = 40 * (now[t[1]] - now[t[0]]);
+  WearOptions options;
+  options.poor_radius_ratio = 0.8;
+  const Mat3 frame = gradient().inverse();
+  const auto part = [&](std::size_t first, std::size_t count) {
+    return measure_part(std::span(mesh.tetrahedra).subspan(first, count), now, rates, frame,
+                        options, 1);
+  };
+  const std::vector<PartWear> parts{part(0, 3), part(3, 0), part(3, mesh.tetrahedra.size() - 3)};
+  const Wear whole = measure_wear(mesh.tetrahedra, now, rates, frame, options, 1);
+  const Wear sum = whole_wear(parts);
+  EXPECT_EQ(sum.worst_radius_ratio, whole.worst_radius_ratio);
+  EXPECT_EQ(sum.worst_jacobian, whole.worst_jacobian);
+  EXPECT_EQ(sum.inversion_strain, whole.inversion_strain);
+  EXPECT_LT(whole.inversion_strain, 1);
+  EXPECT_EQ(sum.poor_share, whole.poor_share);
+  EXPECT_GT(whole.poor_share, 0);
+}
+
+TEST(Wear, APartThatIsNotANumberShowsInTheWhole) {
+  PartWear bad;
+  bad.worst_jacobian = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(whole_wear(std::vector<PartWear>{{}, bad, {}}).worst_jacobian));
+}
+
 TEST(Wear, DoesNotSeeAHomogeneousMotion) {
   const mesh::Mesh mesh = box();
   const Wear at_rest = measure(mesh, mesh.nodes);

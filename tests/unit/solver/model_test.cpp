@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 
 #include "core/error.hpp"
 #include "mesh/quadrature.hpp"
+#include "solver/exchange.hpp"
 #include "support/box_mesh.hpp"
 #include "support/elastic_law.hpp"
 
@@ -174,6 +176,44 @@ TEST(Model, ShowsRankByRankWhatItsSnapshotHolds) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   EXPECT_EQ(pieces > 0, rank == 0);
+}
+
+/// Each node is owned once, each element has its corners where the snapshot has them, and initial
+/// positions are those of the mesh that the model began with.
+TEST(Model, ItsPartsMakeUpTheBody) {
+  const tests::ElasticLaw law(30, 100);
+  const mesh::Snapshot start = box(law, 0.1);
+  Model model(MPI_COMM_WORLD, start, law, one_step(1e-3), tight(), {});
+  model.step(1e-3);
+  const MeshPart part = model.part();
+  const mesh::Snapshot now = model.snapshot();
+  ASSERT_EQ(part.initial.size(), part.positions.size());
+  ASSERT_EQ(part.rates.size(), part.positions.size());
+  std::array<double, 8> sums{static_cast<double>(part.elements.size()),
+                             static_cast<double>(part.owned_nodes)};
+  for (std::size_t n = 0; n < part.owned_nodes; ++n)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto c = static_cast<Eigen::Index>(i);
+      sums[2 + i] += part.initial[n][c];
+      sums[5 + i] += part.positions[n][c] * part.positions[n][c];
+    }
+  for (const auto& e : part.elements) {
+    const auto x = [&](std::size_t i) { return part.positions[static_cast<std::size_t>(e[i])]; };
+    EXPECT_GT((x(1) - x(0)).cross(x(2) - x(0)).dot(x(3) - x(0)), 0);
+    EXPECT_LT((x(4) - (x(0) + x(1)) / 2).norm(), 0.1 * (x(1) - x(0)).norm());
+  }
+  sum(MPI_COMM_WORLD, sums.data(), 8);
+  if (rank_of(MPI_COMM_WORLD) != 0) return;
+  EXPECT_EQ(sums[0], static_cast<double>(now.mesh.tetrahedra.size()));
+  EXPECT_EQ(sums[1], static_cast<double>(now.mesh.nodes.size()));
+  core::Vec3 initial = core::Vec3::Zero(), squares = core::Vec3::Zero();
+  for (const auto& x : start.mesh.nodes) initial += x;
+  for (const auto& x : now.mesh.nodes) squares += x.cwiseProduct(x);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto c = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(sums[2 + i], initial[c], 1e-9 * initial.norm());
+    EXPECT_NEAR(sums[5 + i], squares[c], 1e-9 * squares.norm());
+  }
 }
 
 TEST(Model, AFailureInReadingItsFieldsReachesEveryRank) {
