@@ -385,6 +385,37 @@ bool BoundaryMesher::forbid_shared_edges() {
   return any;
 }
 
+std::vector<std::span<const int>> BoundaryMesher::domain_faces_of_nodes(
+    const BoundaryNumbers& numbers) const {
+  std::vector<std::span<const int>> lists;
+  for (int v = 0; v < geometry_.topology.vertex_count; ++v) lists.push_back(vertex_planes_[v]);
+  for (std::size_t e = 0; e < edges_.size(); ++e)
+    lists.insert(lists.end(), edges_[e].nodes.size() - 2, edge_planes_[e]);
+  lists.resize(numbers.count);
+  return lists;
+}
+
+bool BoundaryMesher::forbid_edges_in_planes() {
+  const auto numbers_now = numbers();
+  const auto domain_faces = domain_faces_of_nodes(numbers_now);
+  bool any = false;
+  for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
+    if (face_copied_[f]) continue;
+    const auto nodes = face_nodes(f, numbers_now);
+    const int n = faces_[f].boundary_count;
+    for (const auto& e : faces_[f].inner_edges) {
+      if (e.a >= n || e.b >= n) continue;
+      const auto &at_a = domain_faces[nodes[e.a]], &at_b = domain_faces[nodes[e.b]];
+      const bool in_plane = std::any_of(at_a.begin(), at_a.end(), [&](int d) {
+        return planes_[d] && d != geometry_.topology.faces[f].domain_face &&
+               std::find(at_b.begin(), at_b.end(), d) != at_b.end();
+      });
+      if (in_plane) any |= forbid(f, {e.a, e.b});
+    }
+  }
+  return any;
+}
+
 int BoundaryMesher::number_of(int edge, int node, const BoundaryNumbers& numbers) const {
   const int last = static_cast<int>(edges_[edge].nodes.size()) - 1;
   if (node == 0 || node == last) return geometry_.topology.edges[edge].vertices[node == 0 ? 0 : 1];
@@ -402,11 +433,15 @@ std::vector<int> BoundaryMesher::update() {
     mesh_faces(meshed);
     for (std::size_t f = 0; f < changed.size(); ++f) changed[f] |= meshed[f];
   }
-  for (int i = 0; forbid_shared_edges(); ++i) {
+  // Either may find some that the other does not.
+  const auto forbid_edges = [this] {
+    return int(forbid_shared_edges()) + forbid_edges_in_planes();
+  };
+  for (int i = 0; forbid_edges() > 0; ++i) {
     if (i == rounds) {
       const auto stale = std::find(face_stale_.begin(), face_stale_.end(), true);
       throw core::RecoverableError(
-          fmt::format("{} shares inner edges with other faces after {} meshes",
+          fmt::format("{} has inner edges of other faces or in the domain's after {} meshes",
                       name(static_cast<int>(stale - face_stale_.begin())), rounds + 1));
     }
     mesh_faces(changed);

@@ -184,6 +184,11 @@ class BoundaryMesher {
   /// Inner edges that join the same two nodes as another inner edge or a 1D element are forbidden;
   /// whether there were any.
   bool forbid_shared_edges();
+  /// Inner edges with both ends in a plane of the domain that their face does not lie in are
+  /// forbidden: the surface would lie on the domain's there. Whether there were any.
+  bool forbid_edges_in_planes();
+  /// The domain faces that a node of an edge or a vertex lies in, by its number.
+  std::vector<std::span<const int>> domain_faces_of_nodes(const BoundaryNumbers& numbers) const;
 
   const Geometry& geometry_;
   MeshingOptions options_;

@@ -16,6 +16,7 @@
 #include "mesh/grain_topology.hpp"
 #include "mesh/tessellation.hpp"
 #include "remap/remesh.hpp"
+#include "support/box_mesh.hpp"
 #include "support/grain_flow.hpp"
 
 namespace polyslip::remap {
@@ -172,6 +173,47 @@ TEST(MergedGrains, GrownAtRandom) {
   EXPECT_EQ(remeshed, 3) << refused << " refused";
   EXPECT_GE(further, 3);
   EXPECT_LE(count.copied, count.faces / 100) << count.faces;
+}
+
+/// Two grains: a corner of a box, above `height`, its upright edge moved outwards by `lean`; and
+/// the rest. Their face meets the sides of the box along two edges each, at an angle.
+mesh::Mesh corner_of_a_box(double lean, double height) {
+  mesh::Mesh box = tests::box_mesh({2, 2, 2}, {1, 1, 1});
+  std::vector<int> grain_of(box.element_count(), 0);
+  for (int e = 0; e < box.element_count(); ++e) {
+    Vec3 centre = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) centre += box.nodes[box.tetrahedra[e][i]] / 4;
+    grain_of[e] = (centre.array() > 0.5).all();
+    box.tetrahedron_cell[e] = e;
+  }
+  mesh::Mesh mesh = merged(box, grain_of);
+  for (Vec3& x : mesh.nodes) {
+    x[2] = x[2] < 0.5 ? 2 * height * x[2] : height + (1 - height) * (2 * x[2] - 1);
+    const double move = lean * (1 - 2 * std::abs(x[0] - 0.5)) * (1 - 2 * std::abs(x[1] - 0.5));
+    x[0] -= move;
+    x[1] -= move;
+  }
+  return mesh;
+}
+
+/// A triangle across such an angle would lie in the side of the box, and no tetrahedron fits
+/// between.
+TEST(MergedGrains, AFaceMeetsSidesOfTheBoxAtAnAngle) {
+  const auto pool = mesh::MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
+  struct Case {
+    double lean, height, element_size;
+  };
+  for (const auto& [lean, height, element_size] :
+       {Case{0.1, 0.5, 1}, Case{0.2, 0.2, 0.7}, Case{0.4, 0.8, 0.7}}) {
+    mesh::MeshingOptions options;
+    options.element_size = element_size;
+    mesh::MeshingReport report;
+    const mesh::Mesh fresh = mesh::mesh_geometry(mesh::geometry_of(corner_of_a_box(lean, height)),
+                                                 options, Vec3::Ones(), *pool, report);
+    ASSERT_NO_THROW(mesh::check(fresh));
+    EXPECT_EQ(report.copied_faces.size(), 0U) << lean;
+    EXPECT_EQ(report.faults.size(), 0U) << lean;
+  }
 }
 
 }  // namespace
