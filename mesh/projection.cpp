@@ -284,16 +284,16 @@ Vec3 FaceProjection::lift(const Vector2d& p, double* beyond) const {
   return nearest;
 }
 
-// Gauss-Newton steps with the tangents of the surface by differences; a step that leads away ends
-// it.
+// Gauss-Newton steps with the tangents of the surface by differences; a step that leads away from
+// the target, or farther beyond the face, ends it.
 Vec3 FaceProjection::nearest(const Vec3& target, Vector2d& p, double* beyond) const {
   constexpr int steps = 4;
   constexpr double difference = 1e-4;  // of the distance
-  Vec3 x = lift(p, beyond);
+  double now_beyond = 0;
+  Vec3 x = lift(p, &now_beyond);
   const double first = (x - target).norm();
-  if (!(first > 0)) return x;
   const double h = difference * (mean_plane_ ? first * scale_.maxCoeff() : 1e-2 * extent());
-  for (int i = 0; i < steps; ++i) {
+  for (int i = 0; i < steps && first > 0; ++i) {
     Eigen::Matrix<double, 3, 2> tangents;
     tangents << (lift(p + Vector2d(h, 0)) - x) / h, (lift(p + Vector2d(0, h)) - x) / h;
     const Eigen::Matrix2d metric = tangents.transpose() * tangents;
@@ -301,11 +301,13 @@ Vec3 FaceProjection::nearest(const Vec3& target, Vector2d& p, double* beyond) co
     const Vector2d step = metric.inverse() * (tangents.transpose() * (target - x));
     double next_beyond = 0;
     const Vec3 next = lift(p + step, &next_beyond);
+    if (!(next_beyond <= now_beyond)) break;
     if (!((next - target).norm() < (1 - 1e-6) * (x - target).norm())) break;
     p += step;
     x = next;
-    if (beyond) *beyond = next_beyond;
+    now_beyond = next_beyond;
   }
+  if (beyond) *beyond = now_beyond;
   return x;
 }
 

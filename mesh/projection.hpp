@@ -42,7 +42,7 @@ class FaceProjection {
   /// then set to how far p is from the flat face, else to zero.
   core::Vec3 lift(const Eigen::Vector2d& p, double* beyond = nullptr) const;
   /// The point of the surface nearest to `target` (unscaled distance), sought from above `start`,
-  /// which is moved there; `beyond` as above, of the point found.
+  /// which is moved there, but not farther beyond the face; `beyond` as above, of the point found.
   core::Vec3 nearest(const core::Vec3& target, Eigen::Vector2d& start,
                      double* beyond = nullptr) const;
   /// How p changes for a unit step along the surface (frame of sizes) against a gradient; slope:

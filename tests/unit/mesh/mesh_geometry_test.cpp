@@ -399,6 +399,23 @@ TEST(FaceProjection, TellsHowFarBeyondTheFaceAPointIs) {
   EXPECT_NEAR(beyond, (far - x).norm(), 1e-12);
 }
 
+/// A step towards a target beyond the face would find its edge, but leave the plane region.
+TEST(FaceProjection, StaysOnTheFaceWhereTheNearestPointIsBeyondIt) {
+  const FaceShape shape = cut_square(0.5);
+  const FaceProjection projection(shape, Vec3::Ones());
+  const Vec3 from(0.9, 0.25, 0);
+  const Eigen::Vector2d start = projection.project(from);
+  Eigen::Vector2d place = start;
+  double beyond = -1;
+  const Vec3 x = projection.nearest({1.6, 0.25, 0.1}, place, &beyond);
+  EXPECT_EQ(beyond, 0);
+  EXPECT_LT((x - from).norm(), 1e-12);
+  EXPECT_EQ((place - start).norm(), 0);
+  const Vec3 near = projection.nearest({0.8, 0.2, 0.1}, place, &beyond);
+  EXPECT_LT((near - Vec3(0.8, 0.2, 0)).norm(), 1e-9);
+  EXPECT_EQ(beyond, 0);
+}
+
 TEST(MeshGeometry, TellsWhatWasGivenUp) {
   MeshingReport report;
   EXPECT_EQ(repairs_text(report), "");
