@@ -1,11 +1,9 @@
 // Remeshing without a solver: polycrystals moved by plane strain and a random flow of a grain's
 // wavelength (support/grain_flow.hpp) are remeshed up to a strain of 2.5. Limits are those of the
-// project: each mesh passes check(), at most 1 % of the faces of all remeshings are copied, grain
-// volumes change by less than 0.1 % rms and 0.3 % at worst in each, and the worst radius ratio, in
-// the frame scaled back to isotropy, is to be at least half of that of the first mesh. Where it is
-// not (3 of 200 remeshings), every mesher meshes every grain with elements 0.8 times as large, as
-// in a run's third attempt. That mends one; two stay at 0.31 and 0.24 of the first mesh's worst:
-// hence 1 % of twenty polycrystals, and 0.2.
+// project, for each remeshing: the mesh passes check(), at most 1 % of the faces are copied, grain
+// volumes change by less than 0.1 % rms and 0.3 % at worst, and the worst radius ratio, in the
+// frame scaled back to isotropy, is at least half of that of the first mesh. In the twenty
+// polycrystals it was 0.54 of it or more, and three faces were copied in 200 remeshings.
 
 #include <gtest/gtest.h>
 
@@ -24,8 +22,7 @@ using core::Vec3;
 constexpr double end = 2.5, interval = 0.25;
 
 struct Outcome {
-  int faces = 0, copied = 0, remeshings = 0;
-  int below_half = 0;  ///< remeshings with a worse element than half of the first mesh's worst
+  int remeshings = 0;
   double rms = 0, worst = 0;
 };
 
@@ -55,7 +52,6 @@ void remesh_to_the_end(int grains, double element_size, const test::GrainFlow::O
       mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), pool, report);
   const double first = test::scaled_quality(mesh, Vec3::Ones()).min_radius_ratio;
   const test::GrainFlow flow(mesh.size, options);
-  constexpr double least_share = 0.5;
   RemeshingOptions remeshing;
   remeshing.lengthening_share = 1;
   for (double strain = 0; strain < end - 1e-9; strain += interval) {
@@ -65,29 +61,19 @@ void remesh_to_the_end(int grains, double element_size, const test::GrainFlow::O
     const auto geometry = regularised_geometry(mesh, remeshing, regularisation);
     const Vec3 scale = meshing_scale(mesh, remeshing);
     mesh = mesh::mesh_geometry(geometry, meshing, scale, pool, report);
-    if (quality_of(mesh) < least_share * first) {
-      // As a run's third attempt: every mesher on every grain, and smaller elements.
-      mesh::MeshingOptions all = meshing;
-      all.mesher_target = 1;
-      all.element_size *= 0.8;
-      mesh = mesh::mesh_geometry(geometry, all, scale, pool, report);
-    }
     ASSERT_NO_THROW(mesh::check(mesh));
     EXPECT_EQ(regularisation.elements_after, 0) << "at strain " << strain + interval;
     compare_volumes(before, mesh::grain_volumes(mesh), outcome);
-    const double share = quality_of(mesh) / first;
-    outcome.below_half += share < least_share;
-    EXPECT_GE(share, 0.2) << "seed " << options.seed << " at strain " << strain + interval;
-    outcome.faces += static_cast<int>(mesh.topology.faces.size());
-    outcome.copied += static_cast<int>(report.copied_faces.size());
+    EXPECT_GE(quality_of(mesh), 0.5 * first)
+        << "seed " << options.seed << " at strain " << strain + interval;
+    EXPECT_LE(report.copied_faces.size(), mesh.topology.faces.size() / 100)
+        << "seed " << options.seed << " at strain " << strain + interval;
     ++outcome.remeshings;
   }
 }
 
 void expect_limits(const Outcome& outcome, int remeshings) {
   EXPECT_EQ(outcome.remeshings, remeshings);
-  EXPECT_LE(outcome.copied, outcome.faces / 100);
-  EXPECT_LE(outcome.below_half, remeshings / 100);
   EXPECT_LT(outcome.rms, 1e-3);
   EXPECT_LT(outcome.worst, 3e-3);
 }
