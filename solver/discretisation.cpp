@@ -5,6 +5,7 @@
 
 #include "core/error.hpp"
 #include "solver/exchange.hpp"
+#include "solver/secant_tangent.hpp"
 
 namespace polyslip::solver {
 std::string describe(Evaluation evaluation) {
@@ -45,7 +46,6 @@ Discretisation::Discretisation(const LocalMesh& local, const NodeExchange& excha
   tangent_.assign(n * 54 * slots_, 0);
   mean_stress_.assign(n * slots_, 0);
   status_.assign(n * slots_, material::PointStatus::converged);
-  element_forces_.resize(n);
   forces_.assign(static_cast<std::size_t>(local.local_nodes) * 3, 0);
   if (mixed_) {
     for (auto* v : {&scale_, &C_, &W_, &schur_}) v->assign(n, 0);
@@ -166,20 +166,25 @@ Evaluation Discretisation::update_material(const Configuration& old, double time
 
 void Discretisation::sum_forces() {
   const Stage stage(exchange_.profile(), "forces");
+  // Some elements at a time, by all threads; then added in their order.
+  constexpr int batch = 1024;
   const int n = local_.element_count();
-#pragma omp parallel for schedule(static)
-  for (int e = 0; e < n; ++e) {
-    const auto at = static_cast<std::size_t>(e) * slots_;
-    ElementGeometry geometry;
-    geometry_of(static_cast<std::size_t>(e), geometry);
-    element_forces(geometry, &stress_[6 * at], &mean_stress_[at], element_forces_[e]);
-  }
+  std::vector<ElementForces> r(static_cast<std::size_t>(std::min(n, batch)));
   std::fill(forces_.begin(), forces_.end(), 0.0);
-  for (int e = 0; e < n; ++e)
-    for (int a = 0; a < element_nodes; ++a)
-      for (int i = 0; i < 3; ++i)
-        forces_[3 * static_cast<std::size_t>(local_.elements[e][a]) + i] +=
-            element_forces_[e][a][i];
+  for (int first = 0; first < n; first += batch) {
+    const int count = std::min(batch, n - first);
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < count; ++k) {
+      const auto e = static_cast<std::size_t>(first + k), at = e * slots_;
+      ElementGeometry geometry;
+      geometry_of(e, geometry);
+      element_forces(geometry, &stress_[6 * at], &mean_stress_[at], r[k]);
+    }
+    for (int k = 0; k < count; ++k)
+      for (int a = 0; a < element_nodes; ++a)
+        for (int i = 0; i < 3; ++i)
+          forces_[3 * static_cast<std::size_t>(local_.elements[first + k][a]) + i] += r[k][a][i];
+  }
   exchange_.add_ghosts(forces_, 3);
 }
 
@@ -210,8 +215,35 @@ void Discretisation::linearise_element(std::size_t e, double weight) {
   }
 }
 
-LinearBlocks Discretisation::linearise(double weight) {
+void Discretisation::match_last_change(std::size_t e) {
+  ElementGeometry geometry;
+  geometry_of(e, geometry);
+  ElementPositions u = positions(static_cast<int>(e), x_);
+  const ElementPositions before = positions(static_cast<int>(e), linearised_x_);
+  for (std::size_t a = 0; a < element_nodes; ++a)
+    for (std::size_t i = 0; i < 3; ++i) u[a][i] -= before[a][i];
+  double h[9 * max_element_slots], change[6 * material::lanes];
+  displacement_gradients(u, geometry, h);
+  // Twice the elastic one: finite increments are not quite those of a chord.
+  const double stiffest = 4 * shear_;
+  for (std::size_t block = 0; block < static_cast<std::size_t>(rule_.blocks); ++block) {
+    const std::size_t at = slots_ * e + material::lanes * block;
+    for (std::size_t k = 0; k < 6 * material::lanes; ++k)
+      change[k] = stress_[6 * at + k] - linearised_stress_[6 * at + k];
+    solver::match_last_change(h + 9 * material::lanes * block, change, stiffest,
+                              &tangent_[54 * at]);
+  }
+}
+
+LinearBlocks Discretisation::linearise(double weight, Tangent tangent) {
   const Stage stage(exchange_.profile(), "linearisation");
+  const int n = local_.element_count();
+  if (tangent == Tangent::secant) {
+#pragma omp parallel for schedule(static)
+    for (int e = 0; e < n; ++e) match_last_change(static_cast<std::size_t>(e));
+  }
+  linearised_x_ = x_;
+  linearised_stress_ = stress_;
   LinearBlocks blocks;
   blocks.x = x_.data();
   blocks.stress = stress_.data();
@@ -221,7 +253,6 @@ LinearBlocks Discretisation::linearise(double weight) {
     blocks.bulk = bulk_;
     return blocks;
   }
-  const int n = local_.element_count();
 #pragma omp parallel for schedule(static)
   for (int e = 0; e < n; ++e) linearise_element(static_cast<std::size_t>(e), weight);
   blocks.kappa = kappa_;

@@ -37,6 +37,10 @@ inline constexpr double augmentation_weight(double linear_tolerance) {
   return linear_tolerance > tight_tolerance ? 4 : 12;
 }
 
+/// Of the material: the law's own, or corrected by the change of the stress since the last
+/// linearisation, which has to be of the same step (solver/secant_tangent.hpp).
+enum class Tangent { of_law, secant };
+
 class Discretisation {
  public:
   /// Collective. reference_volume: [elements] V0, empty: the volumes of x.
@@ -53,7 +57,7 @@ class Discretisation {
   /// The linearised equations at the last evaluation; weight: of the augmentation. Rows and columns
   /// of the mean stresses are scaled by `pressure_scale`: [A B^T; B -C] becomes [A B^T D; D B -D C
   /// D]. Valid until the next evaluation.
-  LinearBlocks linearise(double weight);
+  LinearBlocks linearise(double weight, Tangent tangent);
 
   /// Action of the tangent of these elements on displacements u [local_nodes][3] and mean stresses
   /// p [elements], nothing eliminated: forces A u + B^T p (complete on owned nodes) and volumes B u
@@ -108,7 +112,7 @@ class Discretisation {
   std::vector<double> x_, f_, state_, stress_, tangent_, forces_;
   std::vector<double> mean_stress_;  // [elements][slots]
   std::vector<material::PointStatus> status_;
-  std::vector<ElementForces> element_forces_;
+  std::vector<double> linearised_x_, linearised_stress_;  // of the last linearisation
 
   ElementPositions positions(int element, const std::vector<double>& x) const;
   bool geometry_of(std::size_t element, ElementGeometry& geometry) const;
@@ -121,6 +125,7 @@ class Discretisation {
   /// W V of an element [MPa]: no more than K, where W = 1/C condenses the pressure exactly.
   double augmentation(double modulus, double weight) const;
   void linearise_element(std::size_t element, double weight);
+  void match_last_change(std::size_t element);
 };
 
 }  // namespace polyslip::solver

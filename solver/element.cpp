@@ -128,6 +128,18 @@ bool relative_gradients(const ElementPositions& x_old, const ElementPositions& x
   return true;
 }
 
+void displacement_gradients(const ElementPositions& u, const ElementGeometry& geometry, double* h) {
+  for (int q = 0; q < geometry.points; ++q)
+    for (int k = 0; k < 3; ++k)
+      for (int l = 0; l < 3; ++l) {
+        double sum = 0;
+        for (int a = 0; a < element_nodes; ++a) sum += u[a][k] * geometry.gradients[q][l][a];
+        h[PointRule::at(9, 3 * k + l, q)] = sum;
+      }
+  for (int q = geometry.points; q % material::lanes != 0; ++q)
+    for (int k = 0; k < 9; ++k) h[PointRule::at(9, k, q)] = 0;
+}
+
 void element_forces(const ElementGeometry& geometry, const double* stress,
                     const double* mean_stress, ElementForces& forces) {
   for (auto& r : forces) r = {0, 0, 0};

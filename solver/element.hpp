@@ -38,6 +38,10 @@ bool element_geometry(const PointRule& rule, const ElementPositions& x, ElementG
 bool relative_gradients(const ElementPositions& x_old, const ElementPositions& x,
                         const ElementGeometry& geometry, double* f);
 
+/// h_kl = d u_k / d x_l at each point, of displacements u on the geometry; h: [blocks][9][4], entry
+/// 3 k + l, zero in the lanes that fill the last block.
+void displacement_gradients(const ElementPositions& u, const ElementGeometry& geometry, double* h);
+
 /// f_ai = sum_q w J (sigma'_ij + p delta_ij) dN_a/dx_j  [stress x length^2]
 /// stress: deviatoric Cauchy stress; mean_stress[q]: p.
 void element_forces(const ElementGeometry& geometry, const double* stress,

@@ -113,7 +113,9 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
       return report;
     }
     ++report.iterations;
-    linear_->set_blocks(discretisation_.linearise(augmentation_weight(options_.linear_tolerance)));
+    const Tangent tangent = report.iterations == 1 ? Tangent::of_law : Tangent::secant;
+    linear_->set_blocks(
+        discretisation_.linearise(augmentation_weight(options_.linear_tolerance), tangent));
     const double before = report.balance.free_norm;
     if (!solve_linear(forcing(report.balance, gain), report)) return report;
     const std::vector<double> x0 = x;
