@@ -20,8 +20,10 @@ namespace polyslip::solver {
 
 /// kappa over the macroscopic shear viscosity times 1/time step, sigma / (3 delta eps).
 inline constexpr double point_volume_share = 4;
-/// Largest kappa over the elastic shear modulus: short steps do not lock.
-inline constexpr double point_volume_limit = 0.2;
+/// Largest kappa over the elastic shear modulus, for the linear solver's sake in steps cut below
+/// 1e-4. A limit that longer steps reach takes the resistance away as the step falls, and so
+/// changes what the steps converge to (docs/verification.md, size of the steps).
+inline constexpr double point_volume_limit = 20;
 
 /// kappa [MPa] of a step: von Mises stress of the body before it [MPa], its strain increment.
 double point_volume_modulus(double von_mises_stress, double strain_increment, double shear_modulus);

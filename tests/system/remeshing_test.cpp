@@ -30,10 +30,14 @@ const std::string grown =
 const std::string meshed = "[mesh]\nelement_size = 0.8\nfile = \"meshed/mesh-000.msh\"\n";
 const std::string to_the_end = "final_strain = 0.06\n";
 const std::string wears_soon = "radius_ratio_share = 0.995\nmin_interval = 0.025\n";
-/// Seven iterations are enough for steps this large from zero stress, but not after a reversal.
-const std::string reverses =
-    "initial_strain_increment = 3e-3\nmin_strain_increment = 2.4e-3\n"
-    "[[loading.stage]]\nstrain = 0.02\n[[loading.stage]]\nstrain = 0.01\n";
+/// A rate ten million times slower, at which the flow stress is a hundred and twenty times smaller:
+/// steps this large take eight iterations from the stress there was and five from zero stress; so
+/// do steps half as large.
+const std::string slackens =
+    "initial_strain_increment = 3e-3\nmin_strain_increment = 1.6e-3\n"
+    "[[loading.stage]]\nstrain = 0.02\n[[loading.stage]]\nstrain = 0.026\nstrain_rate = 1e-7\n";
+const std::string six_iterations =
+    "max_newton_iterations = 6\n[material]\nrate_sensitivity = 0.3\n";
 
 /// The variable that makes meshers fail, while it lives.
 class MesherFaults {
@@ -108,12 +112,12 @@ TEST(Remeshing, OfWornElementsComesAgainAfterAKill) {
 
 TEST(Remeshing, ComesWhenNoStepConverges) {
   const Sandbox sandbox;
-  run_deck(sandbox, 0, deck_of(grown, reverses, "", "max_newton_iterations = 7\n"), "run");
+  run_deck(sandbox, 0, deck_of(grown, slackens, "", six_iterations), "run");
   ASSERT_FALSE(HasFailure());
   const json s = summary_of(sandbox);
   ASSERT_EQ(s.at("remeshings").size(), 1u);
   EXPECT_EQ(s["remeshings"][0].at("trigger"), "failed step");
-  EXPECT_EQ(s.at("final_strain"), json(0.03));  // the path, there and back
+  EXPECT_EQ(s.at("final_strain"), json(0.026));
 }
 
 TEST(Remeshing, GoesOnToTheNextMesherWhenOneFails) {
@@ -154,18 +158,19 @@ TEST(Remeshing, ThatFailsWhereNoStepConvergesGoesOnWithTheSmallest) {
   const Sandbox sandbox;
   make_first_mesh(sandbox);
   const MesherFaults faults("gmsh-hxt:1:throw,gmsh-delaunay:1:throw,netgen:1:throw");
-  run_deck(sandbox, 0, deck_of(meshed, reverses, "", "max_newton_iterations = 7\n"), "run");
+  run_deck(sandbox, 0, deck_of(meshed, slackens, "", six_iterations), "run");
   ASSERT_FALSE(HasFailure());
-  EXPECT_EQ(summary_of(sandbox).at("failed_remeshings").size(), 1u);
+  EXPECT_GE(summary_of(sandbox).at("failed_remeshings").size(), 1u);
+  EXPECT_EQ(summary_of(sandbox).at("final_strain"), json(0.026));
 }
 
 /// The same where none so small is allowed: the run stops and says why. A restart tries again.
 TEST(Remeshing, ThatFailsWhereNoStepConvergesStopsTheRun) {
   const Sandbox sandbox;
   make_first_mesh(sandbox);
-  std::string loading = reverses;
-  loading.replace(loading.find("2.4e-3"), 6, "2.99e-3");
-  sandbox.write("run.toml", deck_of(meshed, loading, "", "max_newton_iterations = 7\n"));
+  std::string loading = slackens;
+  loading.replace(loading.find("1.6e-3"), 6, "2.99e-3");
+  sandbox.write("run.toml", deck_of(meshed, loading, "", six_iterations));
   const MesherFaults faults("gmsh-hxt:1:throw,gmsh-delaunay:1:throw,netgen:1:throw");
   std::size_t failed = 0;
   for (const auto& call : {std::vector<std::string>{"run", "run.toml", "--out", "run"},

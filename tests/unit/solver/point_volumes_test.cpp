@@ -76,7 +76,8 @@ TEST_P(PointVolumes, AreFreeOfStressWhereAllPointsGrowAlike) {
 TEST(PointVolumeModulus, IsAViscosityOverTheStepWithALimit) {
   EXPECT_NEAR(point_volume_modulus(27, 0.02, 27e3), 4 * 27 / 0.06, 1e-9);
   EXPECT_NEAR(point_volume_modulus(27, 0.04, 27e3), 4 * 27 / 0.12, 1e-9);
-  EXPECT_NEAR(point_volume_modulus(27, 1e-4, 27e3), 0.2 * 27e3, 1e-9);
+  EXPECT_NEAR(point_volume_modulus(27, 1e-4, 27e3), 4 * 27 / 3e-4, 1e-9);
+  EXPECT_NEAR(point_volume_modulus(27, 1e-5, 27e3), 20 * 27e3, 1e-9);
   EXPECT_EQ(point_volume_modulus(0, 1e-4, 27e3), 0);
 }
 
