@@ -19,14 +19,12 @@ constexpr int split_relocations = 5;
 /// A new node in the middle of an edge is relocated only if it starts above this share.
 constexpr double split_start = 0.3;
 
-double barrier(double rho) { return 1 / (rho * rho * rho); }
-
 struct Descent {
   double sum = 0, least = std::numeric_limits<double>::infinity(), reach = least;
   Vec3 gradient = Vec3::Zero();
 };
 
-Descent descent(const TetStore& store, int node) {
+Descent descent(const TetStore& store, int node, int power) {
   Descent d;
   const Vec3& x = store.position(node);
   for (const int t : store.star(node)) {
@@ -35,9 +33,9 @@ Descent descent(const TetStore& store, int node) {
     const Vec3& p = store.position(tet[j]);
     const Vec3& q = store.position(tet[even_permutations[i][j][0]]);
     const Vec3& r = store.position(tet[even_permutations[i][j][1]]);
-    const double value = barrier(store.quality(t));
+    const double value = barrier(store.quality(t), power);
     d.sum += value;
-    d.gradient -= 3 * value * log_radius_ratio_gradient(x, p, q, r);
+    d.gradient -= power * value * log_radius_ratio_gradient(x, p, q, r);
     d.least = min_or_nan(d.least, store.quality(t));
     d.reach = std::min({d.reach, (x - p).norm(), (x - q).norm(), (x - r).norm()});
   }
@@ -45,7 +43,7 @@ Descent descent(const TetStore& store, int node) {
 }
 
 /// Whether the star with the node at x has a lesser sum and no element below `d.least`.
-bool improves(const TetStore& store, int node, const Vec3& x, const Descent& d) {
+bool improves(const TetStore& store, int node, const Vec3& x, const Descent& d, int power) {
   double sum = 0;
   for (const int t : store.star(node)) {
     std::array<const Vec3*, 4> corners{};
@@ -53,7 +51,7 @@ bool improves(const TetStore& store, int node, const Vec3& x, const Descent& d) 
       corners[i] = store.tet(t)[i] == node ? &x : &store.position(store.tet(t)[i]);
     const double rho = radius_ratio(*corners[0], *corners[1], *corners[2], *corners[3]);
     if (!(rho >= d.least)) return false;
-    sum += barrier(rho);
+    sum += barrier(rho, power);
     if (!(sum < d.sum)) return false;
   }
   return true;
@@ -104,8 +102,8 @@ Vec3 log_radius_ratio_gradient(const Vec3& x, const Vec3& p, const Vec3& q, cons
   return 2 / det * vw - by_area / (n1 + n2 + n3 + vw.norm()) - by_circle / k.squaredNorm();
 }
 
-bool relocate(TetStore& store, int node) {
-  const Descent d = descent(store, node);
+bool relocate(TetStore& store, int node, int power) {
+  const Descent d = descent(store, node, power);
   const double slope = d.gradient.norm();
   if (!(slope > 0) || !std::isfinite(slope)) return false;
   // The sum would reach that of regular elements at (sum - count) / slope, were it linear.
@@ -113,7 +111,7 @@ bool relocate(TetStore& store, int node) {
   double step = std::min(longest_step * d.reach, (d.sum - count) / slope);
   for (int i = 0; i <= halvings; ++i, step /= 2) {
     const Vec3 x = store.position(node) - step / slope * d.gradient;
-    if (!improves(store, node, x, d)) continue;
+    if (!improves(store, node, x, d, power)) continue;
     store.move(node, x);
     return true;
   }

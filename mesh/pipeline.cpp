@@ -57,6 +57,7 @@ class Pipeline {
     mesh_until_all_are();
     if (options_.slide_boundary) slide();
     if (options_.slide_boundary && turns_.first) mesh_poor_grains();
+    if (options_.slide_boundary) raise_worst_elements();
     tell("assembling", 0);
     const auto measure = report_.times.measure("assembly");
     Mesh mesh = assemble(geometry_, boundary_, take_volumes(), scale_, options_.order, threads_);
@@ -109,6 +110,17 @@ class Pipeline {
     const auto measure = report_.times.measure("sliding");
     auto volumes = take_volumes();
     slide_boundary(boundary_, volumes, options_.progression_factor, threads_);
+    give_volumes(volumes);
+  }
+
+  void raise_worst_elements() {
+    const auto measure = report_.times.measure("sliding");
+    auto volumes = take_volumes();
+    raise_worst(boundary_, volumes, options_.progression_factor, threads_);
+    give_volumes(volumes);
+  }
+
+  void give_volumes(std::vector<VolumeMesh>& volumes) {
     core::parallel_for(threads_, results_.size(), [&](std::size_t i) {
       results_[i].mesh = std::move(volumes[i]);
       results_[i].O = mesh_quality_O(results_[i].mesh, boundary_.grain_size(static_cast<int>(i)));

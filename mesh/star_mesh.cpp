@@ -9,13 +9,8 @@
 #include "mesh/tet_store.hpp"
 
 namespace polyslip::mesh {
-namespace {
 
 using core::Vec3;
-
-double barrier(double rho) { return 1 / (rho * rho * rho); }
-
-}  // namespace
 
 StarMesh::StarMesh(std::vector<Vec3> nodes, std::vector<Tet> tets, int surface_count)
     : nodes_(std::move(nodes)), tets_(std::move(tets)), first_(surface_count + 1, 0) {
@@ -30,7 +25,7 @@ StarMesh::StarMesh(std::vector<Vec3> nodes, std::vector<Tet> tets, int surface_c
       if (n < surface_count) stars_[next[n]++] = static_cast<int>(t);
 }
 
-StarDescent star_descent(const StarMesh& mesh, int node) {
+StarDescent star_descent(const StarMesh& mesh, int node, int power) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   StarDescent d{0, infinity, infinity, Vec3::Zero()};
   const Vec3& x = mesh.position(node);
@@ -41,15 +36,17 @@ StarDescent star_descent(const StarMesh& mesh, int node) {
     const Vec3& q = mesh.position(tet[even_permutations[i][j][0]]);
     const Vec3& r = mesh.position(tet[even_permutations[i][j][1]]);
     const double rho = radius_ratio(x, p, q, r);
-    d.sum += barrier(rho);
-    d.gradient -= 3 * barrier(rho) * log_radius_ratio_gradient(x, p, q, r);
+    const double value = barrier(rho, power);
+    d.sum += value;
+    d.gradient -= power * value * log_radius_ratio_gradient(x, p, q, r);
     d.least = min_or_nan(d.least, rho);
     d.reach = std::min({d.reach, (x - p).norm(), (x - q).norm(), (x - r).norm()});
   }
   return d;
 }
 
-bool star_improves(const StarMesh& mesh, int node, const Vec3& x, const StarDescent& now) {
+bool star_improves(const StarMesh& mesh, int node, const Vec3& x, const StarDescent& now,
+                   int power) {
   double sum = 0;
   for (const int number : mesh.star(node)) {
     const auto& tet = mesh.tet(number);
@@ -57,7 +54,7 @@ bool star_improves(const StarMesh& mesh, int node, const Vec3& x, const StarDesc
     for (int i = 0; i < 4; ++i) corners[i] = tet[i] == node ? &x : &mesh.position(tet[i]);
     const double rho = radius_ratio(*corners[0], *corners[1], *corners[2], *corners[3]);
     if (!(rho >= now.least)) return false;
-    sum += barrier(rho);
+    sum += barrier(rho, power);
     if (!(sum < now.sum)) return false;
   }
   return true;

@@ -34,15 +34,17 @@ class StarMesh {
   std::vector<int> stars_;
 };
 
-/// (P.29), the sum over a node's star of rho^-3, with its gradient by the node's position.
+/// (P.29), the sum over a node's star of rho^-power (a multiple of three), with its gradient by the
+/// node's position.
 struct StarDescent {
   double sum = 0, least = 0;  ///< least: least radius ratio
   double reach = 0;           ///< least distance to another node of the star
   core::Vec3 gradient = core::Vec3::Zero();
 };
-StarDescent star_descent(const StarMesh& mesh, int node);
+StarDescent star_descent(const StarMesh& mesh, int node, int power = 3);
 
 /// Whether the star with the node at x has a lesser sum and no element below the least one now.
-bool star_improves(const StarMesh& mesh, int node, const core::Vec3& x, const StarDescent& now);
+bool star_improves(const StarMesh& mesh, int node, const core::Vec3& x, const StarDescent& now,
+                   int power = 3);
 
 }  // namespace polyslip::mesh

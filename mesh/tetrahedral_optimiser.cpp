@@ -5,6 +5,7 @@
 
 #include "mesh/edge_removal.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/node_insertion.hpp"
 #include "mesh/node_relocation.hpp"
 #include "mesh/tet_store.hpp"
 
@@ -18,6 +19,10 @@ constexpr double flipped_below = 0.7;       // elements whose edges and facets a
 constexpr double node_changed_below = 0.3;  // elements for which nodes come and go
 constexpr double flip_gain = 1e-3;
 constexpr double node_gain = 0.03;
+// Where only the worst elements are looked at:
+constexpr int worst_power = 9;
+constexpr int worst_relocations = 5;
+constexpr double worst_node_gain = 0.01;
 
 /// Elements of radius ratio below `limit`, the worst first.
 std::vector<int> worst_first(const TetStore& store, double limit) {
@@ -39,13 +44,26 @@ bool flip(TetStore& store, int t) {
   return false;
 }
 
-bool change_nodes(TetStore& store, int t) {
+bool collapse_a_node(TetStore& store, int t, double gain) {
   const TetStore::Tet tet = store.tet(t);
-  for (const int node : tet)
-    if (collapse_node(store, node, node_gain)) return true;
-  for (const auto& edge : tetrahedron_edges)
-    if (split_edge(store, tet[edge[0]], tet[edge[1]], node_gain)) return true;
-  return false;
+  return std::any_of(tet.begin(), tet.end(),
+                     [&](int node) { return collapse_node(store, node, gain); });
+}
+
+bool split_an_edge(TetStore& store, int t, double gain) {
+  const TetStore::Tet tet = store.tet(t);
+  return std::any_of(tetrahedron_edges.begin(), tetrahedron_edges.end(), [&](const auto& edge) {
+    return split_edge(store, tet[edge[0]], tet[edge[1]], gain);
+  });
+}
+
+bool change_nodes(TetStore& store, int t) {
+  return collapse_a_node(store, t, node_gain) || split_an_edge(store, t, node_gain);
+}
+
+bool change_nodes_at_worst(TetStore& store, int t) {
+  return collapse_a_node(store, t, worst_node_gain) ||
+         insert_node(store, t, worst_node_gain, worst_power);
 }
 
 /// Whether `change` changed any of the elements below `limit`.
@@ -64,6 +82,19 @@ bool relocate_all(TetStore& store) {
   return any;
 }
 
+/// Nodes of the elements below `limit`, several times as long as some moves.
+bool relocate_worst(TetStore& store, double limit) {
+  std::vector<int> nodes;
+  for (const int t : worst_first(store, limit))
+    for (const int node : store.tet(t))
+      if (store.is_free(node) && std::find(nodes.begin(), nodes.end(), node) == nodes.end())
+        nodes.push_back(node);
+  bool any = false;
+  for (int i = 0; i < worst_relocations; ++i)
+    for (const int node : nodes) any |= relocate(store, node, worst_power);
+  return any;
+}
+
 }  // namespace
 
 VolumeMesh optimise_inside(const SurfaceMesh& surface, const VolumeMesh& mesh) {
@@ -73,6 +104,18 @@ VolumeMesh optimise_inside(const SurfaceMesh& surface, const VolumeMesh& mesh) {
     for (int i = 0; i < flip_passes && change_worst(store, flipped_below, flip); ++i) any = true;
     for (int i = 0; i < relocation_sweeps && relocate_all(store); ++i) any = true;
     any |= change_worst(store, node_changed_below, change_nodes);
+    if (!any) break;
+  }
+  VolumeMesh result = store.mesh();
+  return validate(surface, result).empty() ? result : mesh;
+}
+
+VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit) {
+  TetStore store(mesh, surface.nodes.size());
+  for (int round = 0; round < rounds; ++round) {
+    bool any = change_worst(store, limit, flip);
+    any |= relocate_worst(store, limit);
+    any |= change_worst(store, limit, change_nodes_at_worst);
     if (!any) break;
   }
   VolumeMesh result = store.mesh();

@@ -13,4 +13,8 @@ namespace polyslip::mesh {
 /// rounding makes a result that is not valid, `mesh` itself is returned.
 VolumeMesh optimise_inside(const SurfaceMesh& surface, const VolumeMesh& mesh);
 
+/// The same for elements of radius ratio below `limit` and their nodes only, with the sum of
+/// rho^-9.
+VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit);
+
 }  // namespace polyslip::mesh

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/assembly.hpp"
+#include "mesh/boundary_mesh.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/star_mesh.hpp"
 
@@ -150,6 +152,61 @@ TEST_F(BoundarySliding, KeepsTheProgressionAcrossVertices) {
   }
 }
 
+/// Grains' meshes before they are put together.
+struct Parts {
+  Geometry geometry;
+  std::unique_ptr<BoundaryMesher> boundary;
+  std::vector<VolumeMesh> volumes;
+
+  double worst(std::size_t grain) const { return min_radius_ratio(volumes[grain]); }
+};
+
+Parts slid_grains(const Geometry& geometry, MesherPool& pool, double element_size) {
+  Parts parts{geometry, nullptr, {}};
+  MeshingOptions options;
+  options.element_size = element_size;
+  parts.boundary = std::make_unique<BoundaryMesher>(geometry, options, Vec3::Ones());
+  parts.boundary->update();
+  const auto numbers = parts.boundary->numbers();
+  const auto positions = parts.boundary->positions(numbers);
+  std::vector<GrainRequest> requests;
+  for (int grain = 0; grain < geometry.topology.cell_count(); ++grain)
+    requests.push_back(
+        {grain,
+         grain_surface(geometry.topology, *parts.boundary, numbers, positions, grain, Vec3::Ones())
+             .mesh,
+         element_size});
+  PoolOptions pool_options;
+  pool_options.meshers = {"gmsh-hxt"};
+  pool_options.element_size = element_size;
+  for (auto& result : pool.mesh(requests, pool_options))
+    parts.volumes.push_back(std::move(result.mesh));
+  slide_boundary(*parts.boundary, parts.volumes, options.progression_factor, 2);
+  return parts;
+}
+
+TEST_F(BoundarySliding, RaisesTheWorstElementsAndLeavesOtherGrains) {
+  const auto geometry = geometry_of(polycrystal(60, 2));
+  const Parts before = slid_grains(geometry, *pool_, 0.4);
+  Parts after = slid_grains(geometry, *pool_, 0.4);
+  raise_worst(*after.boundary, after.volumes, 2, 2);
+  double least_before = 1, least_after = 1;
+  int bad = 0, raised = 0, same = 0;
+  for (std::size_t g = 0; g < before.volumes.size(); ++g) {
+    least_before = std::min(least_before, before.worst(g));
+    least_after = std::min(least_after, after.worst(g));
+    EXPECT_GE(after.worst(g), std::min(0.3, before.worst(g)) - 1e-12) << g;
+    bad += before.worst(g) < 0.3;
+    raised += before.worst(g) < 0.3 && after.worst(g) > before.worst(g) + 0.01;
+    same += before.volumes[g].nodes == after.volumes[g].nodes;
+  }
+  EXPECT_LT(least_before, 0.25);
+  EXPECT_GT(least_after, least_before + 0.03);
+  EXPECT_GT(bad, 5);
+  EXPECT_GT(raised, bad / 2);
+  EXPECT_GT(same, 0);
+}
+
 TEST_F(BoundarySliding, IsTheSameForAnyNumberOfThreads) {
   const auto geometry = geometry_of(polycrystal(30, 6));
   MeshingOptions options;
@@ -182,16 +239,18 @@ TEST(StarMesh, KnowsEachNodesTetrahedraAndTheGradientOfTheirSum) {
   StarMesh mesh(nodes, {{0, 1, 2, 3}, {0, 2, 1, 4}}, 4);
   EXPECT_EQ(mesh.star(0).size(), 2u);
   EXPECT_EQ(mesh.star(3).size(), 1u);
-  const auto d = star_descent(mesh, 0);
   constexpr double h = 1e-6;
-  for (int i = 0; i < 3; ++i) {
-    mesh.move(0, nodes[0] + h * Vec3::Unit(i));
-    const double up = star_descent(mesh, 0).sum;
-    mesh.move(0, nodes[0] - h * Vec3::Unit(i));
-    const double down = star_descent(mesh, 0).sum;
-    mesh.move(0, nodes[0]);
-    EXPECT_NEAR(d.gradient[i], (up - down) / (2 * h), 1e-5 * std::abs(d.sum));
-  }
+  for (const int power : {3, 9})
+    for (int i = 0; i < 3; ++i) {
+      const auto d = star_descent(mesh, 0, power);
+      mesh.move(0, nodes[0] + h * Vec3::Unit(i));
+      const double up = star_descent(mesh, 0, power).sum;
+      mesh.move(0, nodes[0] - h * Vec3::Unit(i));
+      const double down = star_descent(mesh, 0, power).sum;
+      mesh.move(0, nodes[0]);
+      EXPECT_NEAR(d.gradient[i], (up - down) / (2 * h), 1e-5 * std::abs(d.sum));
+    }
+  const auto d = star_descent(mesh, 0);
   EXPECT_FALSE(star_improves(mesh, 0, Vec3(0.2, 0.3, 0.95), d));  // inverts
   EXPECT_FALSE(star_improves(mesh, 0, Vec3::Constant(std::nan("")), d));
 }

@@ -14,6 +14,7 @@
 #include "mesh/edge_removal.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/node_insertion.hpp"
 #include "mesh/node_relocation.hpp"
 #include "mesh/pipeline.hpp"
 #include "mesh/tet_store.hpp"
@@ -218,6 +219,55 @@ TEST(NodeRelocation, CollapsesANodeNextToTheSurface) {
   EXPECT_FALSE(collapse_node(store, 0, -1));  // on the surface
 }
 
+TEST(NodeInsertion, PutsANodeWhereThatHelps) {
+  core::Random random(5, core::Stream::tests);
+  const VolumeMesh tall = ring_mesh(6, 2.0, 0.05, random);
+  TetStore store(tall, tall.nodes.size());
+  ASSERT_TRUE(insert_node(store, 2, 0.03, 9));
+  const VolumeMesh result = store.mesh();
+  EXPECT_GT(min_radius_ratio(result), store.quality_of(tall.tetrahedra[2]) + 0.03);
+  EXPECT_EQ(result.nodes.size(), tall.nodes.size() + 1);
+  EXPECT_EQ(validate(surface_of(tall, tall.nodes.size()), result), "");
+}
+
+TEST(NodeInsertion, LeavesAsItIsWhatItCannotHelp) {
+  core::Random random(5, core::Stream::tests);
+  const VolumeMesh fit = ring_mesh(5, 0.6, 0.02, random);
+  TetStore store(fit, fit.nodes.size());
+  EXPECT_FALSE(insert_node(store, 2, 0.03, 9));
+  const VolumeMesh result = store.mesh();
+  EXPECT_EQ(result.nodes, fit.nodes);
+  EXPECT_EQ(min_radius_ratio(result), min_radius_ratio(fit));
+  EXPECT_EQ(validate(surface_of(fit, fit.nodes.size()), result), "");
+}
+
+TEST(NodeInsertion, TakesAwayNodesInTheHole) {
+  const VolumeMesh mesh = octahedron(Vec3(0.93, 0.02, 0.01));
+  TetStore store(mesh, 6);
+  int worst = 0;
+  for (int t = 1; t < store.slot_count(); ++t)
+    if (store.quality(t) < store.quality(worst)) worst = t;
+  ASSERT_TRUE(insert_node(store, worst, 0.2, 9));
+  const VolumeMesh result = store.mesh();
+  EXPECT_GT(min_radius_ratio(result), min_radius_ratio(mesh) + 0.2);
+  EXPECT_EQ(validate(surface_of(mesh, 6), result), "");
+  EXPECT_FALSE(store.is_free(6));
+}
+
+TEST(NodeRelocation, WithAHigherPowerRaisesTheLeastFurther) {
+  const VolumeMesh mesh = octahedron(Vec3(0.3, -0.35, 0.2));
+  std::array<double, 2> least{};
+  for (const int power : {3, 9}) {
+    VolumeMesh taller = mesh;
+    taller.nodes[4] = Vec3(0.6, 0.2, 2.5);
+    TetStore store(taller, 6);
+    for (int i = 0; i < 200 && relocate(store, 6, power); ++i) {
+    }
+    least[power == 9] = store.star_quality(6);
+  }
+  EXPECT_GT(least[1], least[0] + 1e-3);
+}
+
 /// Four nodes of an octahedron's equator, hardly out of its plane, between two on either side.
 TEST(TetrahedralOptimiser, RemovesASliver) {
   for (const double bend : {1e-9, 1e-3, 0.05}) {
@@ -232,6 +282,17 @@ TEST(TetrahedralOptimiser, RemovesASliver) {
     EXPECT_EQ(validate(surface, result), "");
     EXPECT_GT(min_radius_ratio(result), 0.6);
   }
+}
+
+TEST(TetrahedralOptimiser, RaisesTheWorstAndLeavesTheRest) {
+  core::Random random(5, core::Stream::tests);
+  const VolumeMesh tall = ring_mesh(6, 2.0, 0.05, random);
+  const SurfaceMesh surface = surface_of(tall, tall.nodes.size());
+  const double worst = min_radius_ratio(tall);
+  EXPECT_EQ(raise_worst_inside(surface, tall, worst).tetrahedra, tall.tetrahedra);
+  const VolumeMesh result = raise_worst_inside(surface, tall, 0.6);
+  EXPECT_EQ(validate(surface, result), "");
+  EXPECT_GT(min_radius_ratio(result), worst + 0.03);
 }
 
 bool identical(const VolumeMesh& a, const VolumeMesh& b) {
