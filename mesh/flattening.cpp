@@ -55,6 +55,93 @@ Places rescaled(const Surface& s, Places places) {
   return places;
 }
 
+/// The corners' triangles alone.
+Surface corner_triangles(const FaceShape& shape, const Vec3& scale) {
+  Surface s;
+  for (const auto& x : shape.points) s.points.push_back(x.cwiseProduct(scale));
+  for (const auto& t : shape.triangles) s.triangles.push_back({t[0], t[1], t[2]});
+  return s;
+}
+
+double length_of(const Surface& s, const std::vector<int>& loop) {
+  double length = 0;
+  for (std::size_t i = 0; i < loop.size(); ++i)
+    length += (s.points[loop[(i + 1) % loop.size()]] - s.points[loop[i]]).norm();
+  return length;
+}
+
+/// The boundary's loops, the longest first; none if loops meet.
+std::vector<std::vector<int>> loops_of(const Surface& s) {
+  auto next = boundary_of(s);
+  std::vector<std::vector<int>> loops;
+  while (!next.empty()) {
+    auto& loop = loops.emplace_back();
+    int at = next.begin()->first;
+    do {
+      const auto on = next.find(at);
+      if (on == next.end()) return {};
+      loop.push_back(at);
+      at = on->second;
+      next.erase(on);
+    } while (at != loop.front());
+    if (loop.size() < 3) return {};
+  }
+  std::stable_sort(loops.begin(), loops.end(),
+                   [&](const auto& a, const auto& b) { return length_of(s, a) > length_of(s, b); });
+  return loops;
+}
+
+/// Lids on all loops but the first: triangles from a new point, amid the loop, to its sides.
+void close_holes(const std::vector<std::vector<int>>& loops, Surface& s) {
+  for (std::size_t k = 1; k < loops.size(); ++k) {
+    const auto& loop = loops[k];
+    Vec3 middle = Vec3::Zero();
+    for (const int i : loop) middle += s.points[i] / static_cast<double>(loop.size());
+    const int lid = static_cast<int>(s.points.size());
+    s.points.push_back(middle);
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      s.triangles.push_back({loop[(i + 1) % loop.size()], loop[i], lid});
+  }
+}
+
+/// Places of the triangles' points that are not fixed: means of their neighbours' with mean-value
+/// weights. False if there are none.
+bool place_in_the_mean_of_neighbours(const Surface& s, const std::vector<char>& fixed,
+                                     Places& places) {
+  const int count = static_cast<int>(s.points.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<double> sums(count, 0.0);
+  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(count, 2);
+  const auto add = [&](int i, int j, double weight) {
+    sums[i] += weight;
+    if (fixed[j])
+      right.row(i) += weight * places[j].transpose();
+    else
+      entries.emplace_back(i, j, -weight);
+  };
+  for (const auto& t : s.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const int i = t[k], p = t[(k + 1) % 3], q = t[(k + 2) % 3];
+      if (fixed[i]) continue;
+      const Vec3 u = s.points[p] - s.points[i], v = s.points[q] - s.points[i];
+      const double half = std::atan2(u.cross(v).norm(), u.dot(v)) / 2;
+      add(i, p, std::tan(half) / u.norm());
+      add(i, q, std::tan(half) / v.norm());
+    }
+  for (int i = 0; i < count; ++i) {
+    if (fixed[i]) right.row(i) = places[i].transpose();
+    entries.emplace_back(i, i, sums[i] > 0 ? sums[i] : 1);  // 1: fixed, or no corner
+  }
+  Eigen::SparseMatrix<double> a(count, count);
+  a.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(a);
+  if (solver.info() != Eigen::Success) return false;
+  const Eigen::MatrixX2d x = solver.solve(right);
+  if (!x.allFinite()) return false;
+  for (int i = 0; i < count; ++i) places[i] = x.row(i).transpose();
+  return true;
+}
+
 /// Two points of the boundary that are far from each other.
 std::array<int, 2> far_apart(const Surface& s, const std::map<int, int>& boundary) {
   const auto farthest = [&](int from) {
@@ -123,57 +210,27 @@ Places conformal_places(const FaceShape& shape, const Vec3& scale) {
 }
 
 Places circle_places(const FaceShape& shape, const Vec3& scale) {
-  const Surface s = surface_of(shape, scale);
-  const auto boundary = boundary_of(s);
-  if (boundary.size() < 3) return {};
-  std::vector<int> loop{boundary.begin()->first};
-  std::vector<double> along{0};
-  do {
-    const auto next = boundary.find(loop.back());
-    if (next == boundary.end() || loop.size() > boundary.size()) return {};
-    along.push_back(along.back() + (s.points[next->second] - s.points[next->first]).norm());
-    loop.push_back(next->second);
-  } while (loop.back() != loop.front());
-  if (loop.size() != boundary.size() + 1) return {};
+  Surface s = corner_triangles(shape, scale);
+  auto loops = loops_of(s);
+  if (loops.empty()) return {};
+  close_holes(loops, s);
   const int count = static_cast<int>(s.points.size());
   Places places(count, Vector2d::Zero());
   std::vector<char> fixed(count, false);
-  for (std::size_t i = 0; i + 1 < loop.size(); ++i) {
-    const double angle = 2 * std::numbers::pi * along[i] / along.back();
-    places[loop[i]] = Vector2d(std::cos(angle), std::sin(angle));
-    fixed[loop[i]] = true;
+  const double round = length_of(s, loops.front());
+  double along = 0;
+  for (std::size_t i = 0; i < loops.front().size(); ++i) {
+    const int here = loops.front()[i], next = loops.front()[(i + 1) % loops.front().size()];
+    const double angle = 2 * std::numbers::pi * along / round;
+    places[here] = Vector2d(std::cos(angle), std::sin(angle));
+    fixed[here] = true;
+    along += (s.points[next] - s.points[here]).norm();
   }
-  std::vector<Eigen::Triplet<double>> entries;
-  std::vector<double> sums(count, 0.0);
-  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(count, 2);
-  const auto add = [&](int i, int j, double weight) {
-    sums[i] += weight;
-    if (fixed[j])
-      right.row(i) += weight * places[j].transpose();
-    else
-      entries.emplace_back(i, j, -weight);
-  };
-  for (const auto& t : s.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const int i = t[k], p = t[(k + 1) % 3], q = t[(k + 2) % 3];
-      if (fixed[i]) continue;
-      const Vec3 u = s.points[p] - s.points[i], v = s.points[q] - s.points[i];
-      const double half = std::atan2(u.cross(v).norm(), u.dot(v)) / 2;
-      add(i, p, std::tan(half) / u.norm());
-      add(i, q, std::tan(half) / v.norm());
-    }
-  for (int i = 0; i < count; ++i) {
-    if (fixed[i]) right.row(i) = places[i].transpose();
-    entries.emplace_back(i, i, fixed[i] ? 1 : sums[i]);
-  }
-  Eigen::SparseMatrix<double> a(count, count);
-  a.setFromTriplets(entries.begin(), entries.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> solver(a);
-  if (solver.info() != Eigen::Success) return {};
-  const Eigen::MatrixX2d x = solver.solve(right);
-  if (!x.allFinite()) return {};
-  for (int i = 0; i < count; ++i) places[i] = x.row(i).transpose();
-  return rescaled(s, std::move(places));
+  if (!place_in_the_mean_of_neighbours(s, fixed, places)) return {};
+  places.resize(shape.points.size());
+  for (const auto& t : shape.triangles)
+    for (int i = 0; i < 3; ++i) places[t[3 + i]] = (places[t[i]] + places[t[(i + 1) % 3]]) / 2;
+  return rescaled(surface_of(shape, scale), std::move(places));
 }
 
 }  // namespace polyslip::mesh

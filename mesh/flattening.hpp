@@ -15,9 +15,12 @@ namespace polyslip::mesh {
 /// distortion but may fold; any number of loops. Empty if there is none.
 std::vector<Eigen::Vector2d> conformal_places(const FaceShape& shape, const core::Vec3& scale);
 
-/// The same with the boundary on a circle, by its lengths, and inner points in the mean of their
-/// neighbours with mean-value weights (M. S. Floater, Comput. Aided Geom. Des. 20, 2003): it cannot
-/// fold, but distorts. For faces with one loop; empty for others.
+/// The same with the longest loop of the boundary on a circle, by its lengths, and the other
+/// corners of the triangles in the mean of their neighbours with mean-value weights (M. S. Floater,
+/// Comput. Aided Geom. Des. 20, 2003): it cannot fold, but distorts. Other loops are closed for
+/// that with a lid. Mid nodes lie amid the corners, so that each triangle is flat and linear: with
+/// those of the boundary on the circle a triangle with two sides there would have no area at the
+/// corner between them. Empty for loops that meet.
 std::vector<Eigen::Vector2d> circle_places(const FaceShape& shape, const core::Vec3& scale);
 
 }  // namespace polyslip::mesh

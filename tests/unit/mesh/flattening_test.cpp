@@ -103,18 +103,66 @@ Vec3 pocket(const Vector2d& p) {
   return {out * q[0], out * q[1], std::cos(M_PI - turn - 0.2 * M_PI)};
 }
 
+/// Every point of the shape, those of its boundary by projection, comes back to where it is.
+void expect_the_way_back(const FaceShape& shape, const FaceProjection& projection,
+                         const std::vector<Vector2d>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_LT((projection.lift(places[i]) - shape.points[i]).norm(), 1e-9) << i;
+  std::map<std::array<int, 2>, int> sides;
+  for (const auto& t : shape.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      ++sides[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
+  for (const auto& [side, count] : sides)
+    for (const int i : side) {
+      if (count != 1) continue;
+      double beyond = -1;
+      const Vec3& x = shape.points[static_cast<std::size_t>(i)];
+      EXPECT_LT((projection.lift(projection.project(x), &beyond) - x).norm(), 1e-9) << i;
+      EXPECT_EQ(beyond, 0) << i;
+    }
+}
+
 TEST(Flattening, PutsAnySurfaceOfOneLoopOnACircleWithoutAFold) {
   const FaceShape shape = grid(9, pocket, none);
   EXPECT_FALSE(FaceProjection(shape, Vec3::Ones()).projects(0));
-  const FaceProjection projection(shape, Vec3::Ones(), circle_places(shape, Vec3::Ones()));
+  const auto places = circle_places(shape, Vec3::Ones());
+  const FaceProjection projection(shape, Vec3::Ones(), places);
   EXPECT_TRUE(projection.projects(0));
+  expect_the_way_back(shape, projection, places);
 }
 
-TEST(Flattening, LaysAFaceWithAHoleFlatConformallyOnly) {
+/// The corner triangles of the grid at two corners have two sides on the circle.
+TEST(Flattening, PutsCornersBetweenTwoSidesOfATriangleOnACircle) {
+  const FaceShape shape = grid(
+      1, [](const Vector2d& p) { return Vec3(p[0], p[1], p[0] * p[1] * (1 - p[1])); }, none);
+  const auto places = circle_places(shape, Vec3::Ones());
+  ASSERT_FALSE(places.empty());
+  const FaceProjection projection(shape, Vec3::Ones(), places);
+  EXPECT_TRUE(projection.projects(0));
+  expect_the_way_back(shape, projection, places);
+}
+
+TEST(Flattening, LaysAFaceWithAHoleFlat) {
   const FaceShape shape = grid(7, bent, [](int i, int j) { return i == 3 && j == 3; });
   const auto places = conformal_places(shape, Vec3::Ones());
   ASSERT_FALSE(places.empty());
   EXPECT_TRUE(FaceProjection(shape, Vec3::Ones(), places).projects(0.8));
+}
+
+TEST(Flattening, PutsAFaceWithHolesOnACircleWithoutAFold) {
+  const FaceShape shape = grid(
+      9, pocket, [](int i, int j) { return (i == 4 && j >= 3 && j <= 5) || (i == 1 && j == 6); });
+  EXPECT_FALSE(FaceProjection(shape, Vec3::Ones()).projects(0));
+  const auto places = circle_places(shape, Vec3::Ones());
+  ASSERT_EQ(places.size(), shape.points.size());
+  const FaceProjection projection(shape, Vec3::Ones(), places);
+  EXPECT_TRUE(projection.projects(0));
+  expect_the_way_back(shape, projection, places);
+}
+
+TEST(Flattening, RefusesLoopsThatMeet) {
+  const FaceShape shape =
+      grid(4, bent, [](int i, int j) { return (i == 1 && j == 1) || (i == 2 && j == 2); });
   EXPECT_TRUE(circle_places(shape, Vec3::Ones()).empty());
 }
 
