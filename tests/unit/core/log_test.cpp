@@ -80,10 +80,13 @@ std::string on_terminal(unsigned short columns) {
   ::dup2(before, STDOUT_FILENO);
   ::close(before);
   ::close(inner);
-  std::string text(1024, '\0');
-  const auto length = ::read(outer, text.data(), text.size());
+  // In pieces, as the kernel hands it over; an error says that the other end is closed and no more
+  // comes.
+  std::string text;
+  char piece[256];
+  for (ssize_t n = 0; (n = ::read(outer, piece, sizeof piece)) > 0;)
+    text.append(piece, static_cast<size_t>(n));
   ::close(outer);
-  text.resize(length > 0 ? static_cast<size_t>(length) : 0);
   return text;
 }
 
