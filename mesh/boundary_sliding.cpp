@@ -1,6 +1,7 @@
 #include "mesh/boundary_sliding.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "core/parallel.hpp"
 #include "mesh/assembly.hpp"
@@ -12,8 +13,8 @@ namespace polyslip::mesh {
 namespace {
 
 constexpr double worst_limit = 0.3;  // elements below are raised by themselves
-constexpr int worst_rounds = 4;
-constexpr int worst_power = 9;
+/// Powers of 1/rho, round by round: the higher, the more the least radius ratio counts.
+constexpr std::array<int, 6> worst_powers{9, 9, 9, 18, 18, 27};
 
 /// Gives each chosen grain its surface's nodes, as they are now, and improves its inside.
 template <class Improve>
@@ -80,18 +81,18 @@ void slide_boundary(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
 
 void raise_worst(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                  double progression_factor, int threads) {
-  for (int round = 0; round < worst_rounds; ++round) {
+  for (const int power : worst_powers) {
     auto places = worst_places(boundary, volumes, worst_limit, threads);
     if (!places.any()) return;
     const auto moved = slide_nodes(boundary, volumes,
                                    {.progression_factor = progression_factor,
                                     .threads = threads,
                                     .chosen = std::move(places.nodes),
-                                    .power = worst_power});
+                                    .power = power});
     for (std::size_t i = 0; i < volumes.size(); ++i) places.grains[i] |= moved[i];
     follow_surface(boundary, volumes, places.grains, threads,
-                   [](const SurfaceMesh& surface, const VolumeMesh& mesh) {
-                     return raise_worst_inside(surface, mesh, worst_limit);
+                   [power](const SurfaceMesh& surface, const VolumeMesh& mesh) {
+                     return raise_worst_inside(surface, mesh, worst_limit, power);
                    });
   }
 }

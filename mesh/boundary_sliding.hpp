@@ -19,8 +19,9 @@ namespace polyslip::mesh {
 void slide_boundary(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                     double progression_factor, int threads);
 
-/// Slides those nodes only that elements below a radius ratio of 0.3 have, by the sum of rho^-9,
-/// and improves these elements (raise_worst_inside); otherwise as slide_boundary. Four times.
+/// Six times: slides those nodes only that elements below a radius ratio of 0.3 have, by the sum of
+/// rho^-9 and, later, rho^-18 and rho^-27, and improves these elements (raise_worst_inside);
+/// otherwise as slide_boundary.
 void raise_worst(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                  double progression_factor, int threads);
 

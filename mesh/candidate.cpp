@@ -7,6 +7,7 @@ namespace polyslip::mesh {
 namespace {
 
 constexpr double highest_floor = 0.2;
+constexpr double slid_floor = 0.3;
 constexpr double sliver = 0.1;
 /// Share of the worst triangle's radius ratio (2 r/R) that elements on it reach.
 constexpr double triangle_share = 0.7;
@@ -36,6 +37,10 @@ SurfaceBounds surface_bounds(const SurfaceMesh& surface, double element_size) {
 }
 
 std::pair<int, double> rank_of(double worst, double O) { return {steps(worst, highest_floor), O}; }
+
+std::pair<int, double> rank_of_slid(double worst, double O) {
+  return {steps(worst, slid_floor), O};
+}
 
 bool replaces(const MeshQuality& candidate, const MeshQuality& present) {
   const int before = steps(present.worst, sliver), after = steps(candidate.worst, sliver);

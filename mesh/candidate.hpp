@@ -22,6 +22,8 @@ bool is_good(const SurfaceBounds& bounds, double worst, double O, double target)
 /// The larger is the better mesh: first by the worst radius ratio as far as it is below 0.2 (in
 /// steps of 0.02), then by O. O alone would take larger elements for a sliver.
 std::pair<int, double> rank_of(double worst, double O);
+/// The same with 0.3 for two meshes of a grain whose nodes have slid.
+std::pair<int, double> rank_of_slid(double worst, double O);
 
 /// A mesh's worst radius ratio and O.
 struct MeshQuality {

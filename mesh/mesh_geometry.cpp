@@ -4,6 +4,11 @@
 namespace polyslip::mesh {
 namespace {
 
+/// Whether our optimiser belongs to a mesher (docs/theory-polycrystal.md, section 5).
+bool has_own_optimiser(const std::string& mesher) {
+  return !mesher.ends_with("-plain") && !mesher.starts_with("paper-");
+}
+
 PoolOptions pool_options(const MeshingOptions& options, std::vector<std::string> meshers) {
   PoolOptions result;
   result.meshers = std::move(meshers);
@@ -18,8 +23,9 @@ PoolOptions pool_options(const MeshingOptions& options, std::vector<std::string>
 
 Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, const core::Vec3& scale,
                    MesherPool& pool, MeshingReport& report, const MeshingProgress& progress) {
-  const auto by = [&](std::vector<std::string> meshers) -> GrainMeshers {
-    const PoolOptions chosen = pool_options(options, std::move(meshers));
+  const auto by = [&](std::vector<std::string> meshers, bool optimise = true) -> GrainMeshers {
+    PoolOptions chosen = pool_options(options, std::move(meshers));
+    chosen.optimise = optimise;
     return [&pool, chosen](std::size_t count, const RequestSource& source, const ResultSink& sink) {
       pool.mesh(count, source, sink, chosen);
     };
@@ -28,7 +34,8 @@ Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, cons
   TurnsOfMeshers turns;
   // In a remeshing the worst element counts for more than O (docs/theory-polycrystal.md, (P.31)).
   if (!geometry.from_mesh && options.slide_boundary && options.mesher_target < 1 && all.size() > 1)
-    turns = {by({all.front()}), by({all.begin() + 1, all.end()})};
+    turns = {by({all.front()}, false), by({all.begin() + 1, all.end()}),
+             has_own_optimiser(all.front())};
   const FaceMeshers face_meshers = [&](const std::vector<FaceRequest>& requests,
                                        const std::string& mesher) {
     return pool.mesh_faces(requests, mesher, pool_options(options, {mesher}));

@@ -212,7 +212,7 @@ void MesherPool::Stream::start(Batch& batch, std::size_t mesher) {
   work.timeout = options_.timeout;
   work.count = batch.places.size();
   work.encode = [&batch, work, this](std::size_t first) {
-    protocol::Batch left{work.mesher, options_.element_size, work.timeout, {}};
+    protocol::Batch left{work.mesher, options_.element_size, work.timeout, options_.optimise, {}};
     left.grains.assign(batch.requests.begin() + static_cast<std::ptrdiff_t>(first),
                        batch.requests.end());
     return protocol::encode(left);

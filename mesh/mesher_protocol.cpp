@@ -111,6 +111,7 @@ Bytes encode(const Batch& batch) {
   w.put(batch.mesher);
   w.put(batch.element_size);
   w.put(batch.timeout);
+  w.put(batch.optimise);
   w.put<std::uint64_t>(batch.grains.size());
   for (const auto& grain : batch.grains) {
     w.put(grain.grain);
@@ -172,6 +173,7 @@ Batch decode_batch(const Bytes& payload) {
   batch.mesher = r.get_string();
   batch.element_size = r.get<double>();
   batch.timeout = r.get<double>();
+  batch.optimise = r.get<bool>();
   const auto count = r.get<std::uint64_t>();
   for (std::uint64_t i = 0; i < count; ++i) {
     GrainRequest grain;

@@ -61,7 +61,8 @@ class ProtocolError : public std::runtime_error {
 struct Batch {
   std::string mesher;
   double element_size = 0;
-  double timeout = 0;  ///< CPU seconds a grain
+  double timeout = 0;    ///< CPU seconds a grain
+  bool optimise = true;  ///< as in PoolOptions
   std::vector<GrainRequest> grains;
 };
 

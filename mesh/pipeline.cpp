@@ -13,6 +13,7 @@
 #include "mesh/candidate.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/self_intersection.hpp"
+#include "mesh/tetrahedral_optimiser.hpp"
 #include "mesh/volume_correction.hpp"
 
 namespace polyslip::mesh {
@@ -56,8 +57,8 @@ class Pipeline {
   Mesh run() {
     mesh_until_all_are();
     if (options_.slide_boundary) slide();
-    if (options_.slide_boundary && turns_.first) mesh_poor_grains();
     if (options_.slide_boundary) raise_worst_elements();
+    if (options_.slide_boundary && turns_.first) mesh_poor_grains();
     tell("assembling", 0);
     const auto measure = report_.times.measure("assembly");
     Mesh mesh = assemble(geometry_, boundary_, take_volumes(), scale_, options_.order, threads_);
@@ -111,6 +112,30 @@ class Pipeline {
     auto volumes = take_volumes();
     slide_boundary(boundary_, volumes, options_.progression_factor, threads_);
     give_volumes(volumes);
+    if (!unoptimised_.empty()) optimise_in_other_order();
+  }
+
+  /// Grains as their mesher left them, optimised where nodes are now only, take the place of those
+  /// optimised before and after if they are better (mesh/candidate.hpp).
+  void optimise_in_other_order() {
+    const auto numbers = boundary_.numbers();
+    const auto positions = boundary_.positions(numbers);
+    core::parallel_for(threads_, results_.size(), [&](std::size_t i) {
+      VolumeMesh other = std::move(unoptimised_[i]);
+      if (other.tetrahedra.empty()) return;
+      const auto grain = request(static_cast<int>(i), numbers, positions);
+      std::copy(grain.surface.nodes.begin(), grain.surface.nodes.end(), other.nodes.begin());
+      if (!(min_radius_ratio(other) > 0)) return;
+      other = optimise_inside(grain.surface, other);
+      const double O = mesh_quality_O(other, grain.element_size);
+      GrainResult& now = results_[i];
+      if (rank_of_slid(min_radius_ratio(other), O) <=
+          rank_of_slid(min_radius_ratio(now.mesh), now.O))
+        return;
+      now.mesh = std::move(other);
+      now.O = O;
+    });
+    unoptimised_.clear();
   }
 
   void raise_worst_elements() {
@@ -181,8 +206,21 @@ class Pipeline {
     for (int grain = 0; grain < topology.cell_count(); ++grain)
       if (stale[grain]) grains.push_back(grain);
     mesh_grains(grains, turns_.first ? turns_.first : meshers_, numbers, positions);
+    if (turns_.first && turns_.unoptimised) optimise(grains, numbers, positions);
     std::erase_if(grains, [&](int grain) { return results_[grain].ok; });
     if (turns_.others) mesh_grains(grains, turns_.others, numbers, positions);
+  }
+
+  /// Optimises meshes that the first mesher has made, and keeps them as they were.
+  void optimise(const std::vector<int>& grains, const BoundaryNumbers& numbers,
+                const std::vector<Vec3>& positions) {
+    unoptimised_.resize(results_.size());
+    core::parallel_for(threads_, grains.size(), [&](std::size_t i) {
+      GrainResult& result = results_[grains[i]];
+      if (!result.ok) return;
+      unoptimised_[grains[i]] = result.mesh;
+      result.mesh = optimise_inside(request(grains[i], numbers, positions).surface, result.mesh);
+    });
   }
 
   void mesh_grains(const std::vector<int>& grains, const GrainMeshers& meshers,
@@ -300,6 +338,7 @@ class Pipeline {
   int threads_;
   BoundaryMesher boundary_;
   std::vector<GrainResult> results_;
+  std::vector<VolumeMesh> unoptimised_;  ///< [grains] or none: as the first mesher left them
 };
 
 }  // namespace

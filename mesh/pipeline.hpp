@@ -15,6 +15,9 @@ using GrainMeshers =
 struct TurnsOfMeshers {
   GrainMeshers first;   ///< for all grains
   GrainMeshers others;  ///< for grains without a mesh by the first
+  /// Whether meshes by the first still lack our optimiser: what nodes slide by has passed it, and
+  /// what has not is the other candidate once they have.
+  bool unoptimised = false;
 };
 
 /// As mesh_geometry (mesh/geometry.hpp), by `meshers`; with `turns`, these make the grains' first

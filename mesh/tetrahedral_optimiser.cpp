@@ -20,7 +20,6 @@ constexpr double node_changed_below = 0.3;  // elements for which nodes come and
 constexpr double flip_gain = 1e-3;
 constexpr double node_gain = 0.03;
 // Where only the worst elements are looked at:
-constexpr int worst_power = 9;
 constexpr int worst_relocations = 5;
 constexpr double worst_node_gain = 0.01;
 
@@ -61,9 +60,9 @@ bool change_nodes(TetStore& store, int t) {
   return collapse_a_node(store, t, node_gain) || split_an_edge(store, t, node_gain);
 }
 
-bool change_nodes_at_worst(TetStore& store, int t) {
+bool change_nodes_at_worst(TetStore& store, int t, int power) {
   return collapse_a_node(store, t, worst_node_gain) ||
-         insert_node(store, t, worst_node_gain, worst_power);
+         insert_node(store, t, worst_node_gain, power);
 }
 
 /// Whether `change` changed any of the elements below `limit`.
@@ -83,7 +82,7 @@ bool relocate_all(TetStore& store) {
 }
 
 /// Nodes of the elements below `limit`, several times as long as some moves.
-bool relocate_worst(TetStore& store, double limit) {
+bool relocate_worst(TetStore& store, double limit, int power) {
   std::vector<int> nodes;
   for (const int t : worst_first(store, limit))
     for (const int node : store.tet(t))
@@ -91,7 +90,7 @@ bool relocate_worst(TetStore& store, double limit) {
         nodes.push_back(node);
   bool any = false;
   for (int i = 0; i < worst_relocations; ++i)
-    for (const int node : nodes) any |= relocate(store, node, worst_power);
+    for (const int node : nodes) any |= relocate(store, node, power);
   return any;
 }
 
@@ -110,12 +109,15 @@ VolumeMesh optimise_inside(const SurfaceMesh& surface, const VolumeMesh& mesh) {
   return validate(surface, result).empty() ? result : mesh;
 }
 
-VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit) {
+VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit,
+                              int power) {
+  if (min_radius_ratio(mesh) >= limit) return mesh;
   TetStore store(mesh, surface.nodes.size());
   for (int round = 0; round < rounds; ++round) {
     bool any = change_worst(store, limit, flip);
-    any |= relocate_worst(store, limit);
-    any |= change_worst(store, limit, change_nodes_at_worst);
+    any |= relocate_worst(store, limit, power);
+    any |= change_worst(store, limit,
+                        [power](TetStore& s, int t) { return change_nodes_at_worst(s, t, power); });
     if (!any) break;
   }
   VolumeMesh result = store.mesh();

@@ -15,6 +15,7 @@ VolumeMesh optimise_inside(const SurfaceMesh& surface, const VolumeMesh& mesh);
 
 /// The same for elements of radius ratio below `limit` and their nodes only, with the sum of
 /// rho^-9.
-VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit);
+VolumeMesh raise_worst_inside(const SurfaceMesh& surface, const VolumeMesh& mesh, double limit,
+                              int power);
 
 }  // namespace polyslip::mesh

@@ -60,8 +60,9 @@ struct PoolOptions {
   /// Share of the O that a grain's surface allows from which on no further mesher tries the grain
   /// (mesh/candidate.hpp); 1: every mesher tries every grain.
   double target = 0.9;
-  double timeout = 60;  ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
-  int jobs = 0;         ///< 0: one a core
+  double timeout = 60;   ///< CPU seconds a grain and candidate (RLIMIT_CPU of the child)
+  int jobs = 0;          ///< 0: one a core
+  bool optimise = true;  ///< by our optimiser, after the meshers that it belongs to
 };
 
 /// Worker processes that hold Gmsh and Netgen; the main program never links them. `start` must be

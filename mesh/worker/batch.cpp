@@ -87,7 +87,7 @@ std::string mesh_grain(Mesher& mesher, const protocol::Batch& batch, std::uint64
       mesher.fill(grain.surface, grain.element_size > 0 ? grain.element_size : batch.element_size);
   std::string fault = validate(grain.surface, mesh);
   if (!fault.empty()) return fault;
-  if (mesher.is_optimised() && !faults.unoptimised(batch.mesher, grain.grain))
+  if (batch.optimise && mesher.is_optimised() && !faults.unoptimised(batch.mesher, grain.grain))
     mesh = optimise_inside(grain.surface, mesh);
   faults.after(batch.mesher, grain.grain, mesh, socket);
   if (!protocol::send_all(socket, protocol::encode_mesh(index, mesh))) end(false);

@@ -17,6 +17,7 @@
 
 #include "core/error.hpp"
 #include "mesh/candidate.hpp"
+#include "mesh/tetrahedral_optimiser.hpp"
 #include "mesh/volume_mesher.hpp"
 #include "surfaces.hpp"
 
@@ -253,6 +254,31 @@ TEST(Candidates, ReplaceAPresentMeshForABetterOOrASliver) {
   EXPECT_TRUE(replaces({0.07, 0.85}, sliver));
   EXPECT_FALSE(replaces({0.03, 0.99}, sliver));
   EXPECT_FALSE(replaces({0.03, 0.99}, present));
+}
+
+TEST(Candidates, OfAGrainWhoseNodesHaveSlidCompareTheWorstElementUpToThreeTenths) {
+  EXPECT_GT(rank_of_slid(0.29, 0.9), rank_of_slid(0.25, 0.95));
+  EXPECT_GT(rank_of_slid(0.31, 0.95), rank_of_slid(0.5, 0.94));
+  EXPECT_GT(rank_of_slid(0.281, 0.95), rank_of_slid(0.299, 0.94)) << "in steps";
+  EXPECT_GT(rank_of(0.25, 0.95), rank_of(0.29, 0.9));
+}
+
+TEST(MesherPool, LeavesOutOurOptimiserIfAsked) {
+  const auto pool = MesherPool::start(POLYSLIP_BINARY_DIR "/polyslip-mesher");
+  const auto requests = ellipsoids(4);
+  PoolOptions options;
+  options.meshers = {"gmsh-hxt"};
+  const auto optimised = pool->mesh(requests, options);
+  options.optimise = false;
+  const auto left = pool->mesh(requests, options);
+  int differ = 0;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    ASSERT_TRUE(optimised[i].ok && left[i].ok);
+    EXPECT_EQ(left[i].mesher, "gmsh-hxt");
+    EXPECT_TRUE(identical(optimised[i].mesh, optimise_inside(requests[i].surface, left[i].mesh)));
+    differ += !identical(optimised[i].mesh, left[i].mesh);
+  }
+  EXPECT_GT(differ, 0);
 }
 
 struct Fault {

@@ -289,8 +289,8 @@ TEST(TetrahedralOptimiser, RaisesTheWorstAndLeavesTheRest) {
   const VolumeMesh tall = ring_mesh(6, 2.0, 0.05, random);
   const SurfaceMesh surface = surface_of(tall, tall.nodes.size());
   const double worst = min_radius_ratio(tall);
-  EXPECT_EQ(raise_worst_inside(surface, tall, worst).tetrahedra, tall.tetrahedra);
-  const VolumeMesh result = raise_worst_inside(surface, tall, 0.6);
+  EXPECT_EQ(raise_worst_inside(surface, tall, worst, 9).tetrahedra, tall.tetrahedra);
+  const VolumeMesh result = raise_worst_inside(surface, tall, 0.6, 9);
   EXPECT_EQ(validate(surface, result), "");
   EXPECT_GT(min_radius_ratio(result), worst + 0.03);
 }
