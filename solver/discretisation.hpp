@@ -34,7 +34,7 @@ inline constexpr double tight_tolerance = 1e-4;
 /// shear modulus. To 1e-2 the smoother counts, which a large weight slows down; to 1e-8 the few
 /// pressures that the mesh hardly controls do, and the larger it is the fewer iterations they take.
 inline constexpr double augmentation_weight(double linear_tolerance) {
-  return linear_tolerance > tight_tolerance ? 4 : 12;
+  return linear_tolerance > tight_tolerance ? 4 : 40;
 }
 
 /// Of the material: the law's own, or corrected by the change of the stress since the last

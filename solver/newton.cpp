@@ -51,10 +51,14 @@ LinearLayout make_layout(const Discretisation& d, const std::vector<std::uint8_t
 /// Share of the tolerance on forces below which a linear system need not be solved.
 constexpr double margin = 0.3;
 
-/// More sweeps go with the larger weight of the augmentation.
+/// The larger weight of the augmentation makes the displacements' block harder: more sweeps over a
+/// wider interval, and a better solve on the vertex level.
 LinearSettings settings_for(double linear_tolerance) {
   LinearSettings settings;
-  if (linear_tolerance <= tight_tolerance) settings.multigrid.sweeps_after = 6;
+  if (linear_tolerance > tight_tolerance) return settings;
+  settings.multigrid.sweeps_after = 16;
+  settings.multigrid.smoother.lower = 0.02;
+  settings.multigrid.coarse.iterations = 4;
   return settings;
 }
 
