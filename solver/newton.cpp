@@ -158,12 +158,12 @@ double NewtonSolver::excess(const Balance& b) const {
 /// give: its square is Eisenstat and Walker's second choice (SIAM J. Sci. Comput. 17, 1996). Nor is
 /// more needed than what brings the forces below their tolerance.
 double NewtonSolver::forcing(const Balance& b, double gain) const {
-  constexpr double first = 0.03, loosest = 0.1, factor = 0.9;
+  constexpr double first = 0.1, loosest = 0.2, factor = 0.9;
   // relative to a linear_tolerance of 0.01
   const double unit = options_.linear_tolerance / 0.01;
   const double wanted = unit * (gain == 1 ? first : factor * gain * gain);
   return std::clamp(std::max(wanted, margin / std::max(excess(b), 1.0)), options_.linear_tolerance,
-                    std::max(loosest * unit, options_.linear_tolerance));
+                    std::max(loosest * std::min(unit, 1.0), options_.linear_tolerance));
 }
 
 bool NewtonSolver::balanced(const Balance& b) const {

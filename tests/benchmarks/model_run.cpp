@@ -184,7 +184,7 @@ void run(const Request& r, mesh::Snapshot start, const material::CrystalLaw& law
                    (all.back().step.strain - all.front().step.strain + all.front().step.step_size));
   if (r.tight == 0) return;
   solver::SolverOptions tight = r.solver;
-  tight.linear_tolerance = 0.1 * r.tight;  // no solve is looser than ten times this
+  tight.linear_tolerance = 0.05 * r.tight;  // no solve is looser than twenty times this
   solver::Model again(MPI_COMM_WORLD, model.snapshot(), law, loading, tight, log);
   const auto m = step(again, 1);
   if (tests::on_root(MPI_COMM_WORLD))
