@@ -21,7 +21,7 @@ constexpr double flip_gain = 1e-3;
 constexpr double node_gain = 0.03;
 // Where only the worst elements are looked at:
 constexpr int worst_relocations = 5;
-constexpr double worst_node_gain = 0.01;
+constexpr double worst_node_gain = 0.003;
 
 /// Elements of radius ratio below `limit`, the worst first.
 std::vector<int> worst_first(const TetStore& store, double limit) {
