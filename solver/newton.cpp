@@ -121,7 +121,7 @@ NewtonReport NewtonSolver::solve(const NewtonProblem& problem, std::vector<doubl
     linear_->set_blocks(
         discretisation_.linearise(augmentation_weight(options_.linear_tolerance), tangent));
     const double before = report.balance.free_norm;
-    if (!solve_linear(forcing(report.balance, gain), report)) return report;
+    if (!solve_linear(forcing(report.balance, gain), x, report)) return report;
     const std::vector<double> x0 = x;
     if (!search(problem, report.balance, x, p, report)) return report;
     moved_ = relative_move(x, x0, problem.old.x);
@@ -161,6 +161,8 @@ double NewtonSolver::forcing(const Balance& b, double gain) const {
   constexpr double first = 0.1, loosest = 0.2, factor = 0.9;
   // relative to a linear_tolerance of 0.01
   const double unit = options_.linear_tolerance / 0.01;
+  // What is left then is of long waves, which move much with little force.
+  if (planar_.count() > 0 && excess(b) <= 1) return options_.linear_tolerance;
   const double wanted = unit * (gain == 1 ? first : factor * gain * gain);
   return std::clamp(std::max(wanted, margin / std::max(excess(b), 1.0)), options_.linear_tolerance,
                     std::max(loosest * std::min(unit, 1.0), options_.linear_tolerance));
@@ -194,7 +196,8 @@ double NewtonSolver::relative_move(const std::vector<double>& x, const std::vect
   return squares[0] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
 }
 
-bool NewtonSolver::solve_linear(double tolerance, NewtonReport& report) {
+bool NewtonSolver::solve_linear(double tolerance, const std::vector<double>& x,
+                                NewtonReport& report) {
   std::vector<double> forces(residual_.size()), volumes(pressure_increment_.size());
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = -residual_[i];
   for (std::size_t e = 0; e < volumes.size(); ++e)
@@ -203,8 +206,9 @@ bool NewtonSolver::solve_linear(double tolerance, NewtonReport& report) {
   LinearReport linear;
   if (!solve_system(tolerance, forces, volumes, increment_, pressure_increment_, linear, report))
     return false;
-  const double left = std::max(tolerance * linear.right_side, margin * allowed(report.balance));
-  return add_planar(left, report);
+  double left = tolerance * linear.right_side;
+  if (excess(report.balance) > 1) left = std::max(left, margin * allowed(report.balance));
+  return add_planar(left, x, report);
 }
 
 bool NewtonSolver::solve_system(double tolerance, const std::vector<double>& forces,
@@ -260,19 +264,28 @@ std::vector<double> NewtonSolver::face_forces(const std::vector<double>& u,
   return planar_.sums(forces);
 }
 
-bool NewtonSolver::respond(std::size_t face, double tolerance, NewtonReport& report) {
+/// The first guess is the stretch of the whole body, whose rest is the measure of what is asked: a
+/// unit motion of the face alone strains only the elements at it, by the more the longer the body.
+bool NewtonSolver::respond(std::size_t face, double tolerance, const std::vector<double>& x,
+                           NewtonReport& report) {
   Response& r = responses_[face];
   const auto unit = planar_.direction(face);
   std::vector<double> forces, volumes;
   face_forces(unit, std::vector<double>(pressure_increment_.size(), 0), forces, volumes);
   for (double& f : forces) f = -f;
   for (double& v : volumes) v = -v;
-  if (r.u.empty()) r.p.resize(volumes.size());
   LinearReport linear;
-  if (!solve_system(tolerance, forces, volumes, r.u, r.p, linear, report)) return false;
+  if (r.u.empty()) {
+    constexpr double as_it_is = 1e9, least_share = 1e-6;
+    r.u = planar_.stretch(face, x);
+    r.p.assign(volumes.size(), discretisation_.law().bulk_modulus() / planar_.extent(face, x));
+    if (!solve_system(as_it_is, forces, volumes, r.u, r.p, linear, report)) return false;
+    r.share = std::clamp(linear.relative_residual, least_share, 1.0);
+  }
+  if (!solve_system(tolerance * r.share, forces, volumes, r.u, r.p, linear, report)) return false;
   for (std::size_t dof = 0; dof < unit.size(); ++dof)
     if (constrained_[dof]) r.u[dof] = unit[dof];
-  r.asked = linear.right_side;
+  r.asked = r.share * linear.right_side;
   r.left = linear.relative_residual * linear.right_side;
   return true;
 }
@@ -292,19 +305,19 @@ std::vector<double> NewtonSolver::face_motions() const {
 
 /// A face moves the whole body: what is left of the response to a unit motion counts with the
 /// motion, which beside a small imbalance can be large (from zero stress in a long body).
-bool NewtonSolver::add_planar(double left, NewtonReport& report) {
+bool NewtonSolver::add_planar(double left, const std::vector<double>& x, NewtonReport& report) {
   const std::size_t n = planar_.count();
   if (n == 0) return true;
   constexpr int max_rounds = 4;
-  constexpr double aim = 0.5, tightest = 1e-8;
+  constexpr double aim = 0.5, tightest = 1e-8, loosest = 10;
   for (std::size_t dof = 0; dof < constrained_.size(); ++dof)
     if (constrained_[dof]) increment_[dof] = 0;
   responses_.resize(n);
-  std::vector<double> tolerances(n, options_.linear_tolerance);
+  std::vector<double> tolerances(n, std::min(loosest * options_.linear_tolerance, 0.1));
   bool fine = false;
   for (int round = 0; round < max_rounds && !fine; ++round) {
     for (std::size_t k = 0; k < n; ++k)
-      if (!respond(k, tolerances[k], report)) return false;
+      if (!respond(k, tolerances[k], x, report)) return false;
     planar_increment_ = face_motions();
     fine = true;
     for (std::size_t k = 0; k < n; ++k) {

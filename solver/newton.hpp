@@ -66,8 +66,9 @@ class NewtonSolver {
   /// Of the body to a unit motion of a planar face, as the linearised equations have it.
   struct Response {
     std::vector<double> u, p;  // [local_nodes][3] the face's motion included, [elements]
-    double asked = 0,
-           left = 0;  // norms of what the motion alone throws out of balance, of the rest
+    double share = 0;  // of what the motion of the face alone throws out of balance, the first
+                       // guess's
+    double asked = 0, left = 0;  // norms of that share, of the rest
   };
 
   Discretisation& discretisation_;
@@ -96,7 +97,8 @@ class NewtonSolver {
   /// Tolerance of the next linear solve, `gain` being what the last iteration made of the forces
   /// (1 before the first).
   double forcing(const Balance& balance, double gain) const;
-  bool solve_linear(double tolerance, NewtonReport& report);
+  /// x: positions.
+  bool solve_linear(double tolerance, const std::vector<double>& x, NewtonReport& report);
   /// Solves for increments with these right sides: forces on free dofs, volumes of elements; from
   /// u and p as a guess unless they are empty.
   bool solve_system(double tolerance, const std::vector<double>& forces,
@@ -104,9 +106,10 @@ class NewtonSolver {
                     std::vector<double>& p, LinearReport& linear, NewtonReport& report);
   /// Adds to the increment what the planar faces' own unknowns do; they leave no more than `left`
   /// out of balance (norm of the linear solver).
-  bool add_planar(double left, NewtonReport& report);
+  bool add_planar(double left, const std::vector<double>& x, NewtonReport& report);
   /// Brings a response up to date with the present tangent: its rest within tolerance * asked.
-  bool respond(std::size_t face, double tolerance, NewtonReport& report);
+  bool respond(std::size_t face, double tolerance, const std::vector<double>& x,
+               NewtonReport& report);
   /// Force on each planar face (and elements' volumes) by the tangent's action.
   std::vector<double> face_forces(const std::vector<double>& u, const std::vector<double>& p,
                                   std::vector<double>& forces, std::vector<double>& volumes) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/shape_functions.hpp"
 #include "solver/exchange.hpp"
@@ -103,6 +104,32 @@ std::vector<double> PlanarFaces::direction(std::size_t k) const {
   std::vector<double> v(is_planar_.size(), 0);
   for (std::size_t dof : dofs_[k]) v[dof] = 1;
   return v;
+}
+
+std::array<double, 2> PlanarFaces::ends(std::size_t k, const std::vector<double>& x) const {
+  const auto c = static_cast<std::size_t>(faces_[k].component());
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t dof = c; dof < x.size(); dof += 3) {
+    low = std::min(low, x[dof]);
+    high = std::max(high, x[dof]);
+  }
+  low = minimum(local_.comm, low);
+  high = maximum(local_.comm, high);
+  return faces_[k].outward() > 0 ? std::array{high, low} : std::array{low, high};
+}
+
+double PlanarFaces::extent(std::size_t k, const std::vector<double>& x) const {
+  const auto [face, far] = ends(k, x);
+  return face - far;
+}
+
+std::vector<double> PlanarFaces::stretch(std::size_t k, const std::vector<double>& x) const {
+  const auto [face, far] = ends(k, x);
+  std::vector<double> u(x.size(), 0);
+  for (std::size_t dof = static_cast<std::size_t>(faces_[k].component()); dof < x.size(); dof += 3)
+    u[dof] = (x[dof] - far) / (face - far);
+  for (const std::size_t dof : dofs_[k]) u[dof] = 1;
+  return u;
 }
 
 std::vector<double> PlanarFaces::sums(const std::vector<double>& values) const {

@@ -19,6 +19,11 @@ class PlanarFaces {
   std::size_t count() const { return faces_.size(); }
   /// [local_nodes][3] 1 for the dofs of face k, 0 elsewhere
   std::vector<double> direction(std::size_t k) const;
+  /// From the far end of the body to face k, along its normal: negative for a low face. Collective.
+  double extent(std::size_t k, const std::vector<double>& x) const;
+  /// [local_nodes][3] the motion that stretches the body by one unit at face k, nothing at the far
+  /// end. Collective.
+  std::vector<double> stretch(std::size_t k, const std::vector<double>& x) const;
   /// Local elements with a node on one of the faces.
   const std::vector<int>& elements() const { return elements_; }
   bool owns(std::size_t dof) const { return is_planar_[dof] != 0; }
@@ -40,6 +45,8 @@ class PlanarFaces {
   std::vector<std::vector<std::size_t>> dofs_;  // of each face, owned first
   std::vector<std::size_t> owned_;              // how many of them
   std::vector<std::uint8_t> is_planar_;
+  /// Coordinates of the face and of the far end.
+  std::array<double, 2> ends(std::size_t k, const std::vector<double>& x) const;
   std::vector<int> elements_;
   /// Six-node triangles of each face: corners, then mid nodes after each corner.
   std::vector<std::vector<std::array<int, 6>>> triangles_;

@@ -98,22 +98,30 @@ TEST(Loads, PlaneStrainAlongOtherAxesWithAPlanarFace) {
 /// to it has to be known so much better.
 TEST(Loads, ALongBodyWithAPlanarFaceConvergesAtLooseLinearTolerances) {
   const auto law = material::make_fcc_law({});
-  const auto boxed = [&] {
-    auto m = tests::box_mesh({50, 5, 2}, {50, 4, 0.4}, 25);
+  const auto iterations = [&](const core::Vec3& sides, double tolerance, int count) {
+    auto m = tests::box_mesh({50, 5, 2}, sides, 25);
     tests::distort(m, 0.2);
-    return tests::on_root(MPI_COMM_WORLD)
-               ? initial_snapshot(std::move(m), tests::some_orientations(25), *law)
-               : mesh::Snapshot{};
+    LoadingOptions o;
+    o.lateral = "planar";
+    SolverOptions loose;
+    loose.linear_tolerance = tolerance;
+    const mesh::Snapshot start =
+        tests::on_root(MPI_COMM_WORLD)
+            ? initial_snapshot(std::move(m), tests::some_orientations(25), *law)
+            : mesh::Snapshot{};
+    Model model(MPI_COMM_WORLD, start, *law, o, loose, {});
+    int sum = 0;
+    for (int i = 0; i < count; ++i) {
+      const StepRecord r = model.step(1, 0);
+      EXPECT_EQ(r.cuts, 0) << i;
+      sum += r.newton_iterations;
+      EXPECT_LT(std::abs(r.face_forces[1][0]), 1e-3 * std::abs(r.face_forces[5][2])) << i;
+    }
+    return sum;
   };
-  LoadingOptions o;
-  o.lateral = "planar";
-  SolverOptions loose;
-  loose.linear_tolerance = 0.05;
-  Model model(MPI_COMM_WORLD, boxed(), *law, o, loose, {});
-  const StepRecord r = model.step(1, 0);
-  EXPECT_EQ(r.cuts, 0);
-  EXPECT_LE(r.newton_iterations, 6);
-  EXPECT_LT(std::abs(r.face_forces[1][0]), 1e-3 * std::abs(r.face_forces[5][2]));
+  EXPECT_LE(iterations({50, 4, 0.4}, 0.05, 1), 6);
+  // As at a strain of 3: 8, but 13 from a unit motion of the face alone as the first guess.
+  EXPECT_LE(iterations({150, 3, 0.1}, 0.01, 2), 10);
 }
 
 TEST(Loads, SimpleShearIsUniform) {
