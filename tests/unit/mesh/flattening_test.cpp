@@ -131,17 +131,6 @@ TEST(Flattening, PutsAnySurfaceOfOneLoopOnACircleWithoutAFold) {
   expect_the_way_back(shape, projection, places);
 }
 
-/// The corner triangles of the grid at two corners have two sides on the circle.
-TEST(Flattening, PutsCornersBetweenTwoSidesOfATriangleOnACircle) {
-  const FaceShape shape = grid(
-      1, [](const Vector2d& p) { return Vec3(p[0], p[1], p[0] * p[1] * (1 - p[1])); }, none);
-  const auto places = circle_places(shape, Vec3::Ones());
-  ASSERT_FALSE(places.empty());
-  const FaceProjection projection(shape, Vec3::Ones(), places);
-  EXPECT_TRUE(projection.projects(0));
-  expect_the_way_back(shape, projection, places);
-}
-
 TEST(Flattening, LaysAFaceWithAHoleFlat) {
   const FaceShape shape = grid(7, bent, [](int i, int j) { return i == 3 && j == 3; });
   const auto places = conformal_places(shape, Vec3::Ones());
