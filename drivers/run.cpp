@@ -196,7 +196,7 @@ void RunJob::start() {
     measure_new_mesh();
     store();
   }
-  strain_start_ = model_->strain();
+  last_step_ = core::wall_seconds();
   if (progress_.due) {
     log_.info("a remeshing is due: {}", progress_.due.reason);
     if (remesh(model_->snapshot())) arrive();

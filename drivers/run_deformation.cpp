@@ -1,5 +1,6 @@
 // The steps of a run, and what is done between them.
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.hpp"
@@ -76,10 +77,18 @@ void RunJob::record(const solver::StepRecord& step) {
     macro_->append({step.strain, step.time, step.step_size, step.stress, step.fx_x1, step.fy_y1,
                     step.fz_z1, step.newton_iterations, step.linear_iterations, after_remeshing,
                     step.load_strain, step.load_stress, step.face_forces});
-    const double left = solver::LoadProgram(options_.loading).planned_end() - step.strain;
-    const double pace = (core::wall_seconds() - wall_start_) / (step.strain - strain_start_);
-    log_.info(step_text(step, pace * left));
+    log_.info(step_text(step, time_left(step)));
   });
+}
+
+double RunJob::time_left(const solver::StepRecord& step) {
+  const double now = core::wall_seconds();
+  pace_.add(now - last_step_);
+  last_step_ = now;
+  const double next = std::min(step.step_size * options_.loading.increment_growth,
+                               options_.loading.max_strain_increment);
+  const double end = solver::LoadProgram(options_.loading).planned_end();
+  return pace_.mean() * steps_ahead(step.strain, next, end, events_, options_.loading);
 }
 
 void RunJob::advance() {

@@ -14,6 +14,7 @@
 #include "drivers/run.hpp"
 #include "drivers/run_progress.hpp"
 #include "drivers/schedule.hpp"
+#include "drivers/time_left.hpp"
 #include "results/checkpoint.hpp"
 #include "results/macro_csv.hpp"
 #include "results/state_series.hpp"
@@ -63,6 +64,8 @@ class RunJob {
   double next_target() const;
   /// Counts and writes a step.
   void record(const solver::StepRecord& step);
+  /// At the end of a step [s]; on rank 0.
+  double time_left(const solver::StepRecord& step);
   /// Stores, writes checkpoints and remeshes, as is due at this strain.
   void arrive();
   Event event_here() const;
@@ -97,7 +100,8 @@ class RunJob {
   core::Log log_;
   core::StageTimes times_;
   double wall_start_;
-  double strain_start_ = 0;
+  double last_step_ = 0;  ///< wall clock [s]
+  Pace pace_;             ///< on rank 0
   std::string deck_text_, resolved_, fingerprint_;
   Options options_;
   Input input_;  ///< of a run that begins; on rank 0
