@@ -216,7 +216,7 @@ void read_wear(Deck::Table& t, remap::RemeshingOptions& o) {
        .max = 10,
        .help =
            "No worn elements are looked for within this strain after a remeshing, or before one of "
-           "at_strains."});
+           "at_strains or the end."});
 }
 
 void read_transport(Deck::Table& t, remap::RemeshingOptions& o) {

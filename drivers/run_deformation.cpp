@@ -128,11 +128,12 @@ Event RunJob::event_here() const {
   return event;
 }
 
-/// Whether the deck asks for a remeshing so soon that worn elements can wait for it.
-bool RunJob::asked_for_soon() const {
+/// Whether the end, or a remeshing that the deck asks for, is so near that worn elements can wait.
+bool RunJob::worn_can_wait() const {
+  const double near = model_->strain() + options_.remeshing.min_interval;
+  if (near > solver::LoadProgram(options_.loading).planned_end()) return true;
   for (const double strain : options_.remeshing.at_strains)
-    if (strain > model_->strain() && strain < model_->strain() + options_.remeshing.min_interval)
-      return true;
+    if (strain > model_->strain() && strain < near) return true;
   return false;
 }
 
@@ -140,7 +141,7 @@ DueRemeshing RunJob::due_here(const Event& event) {
   if (model_->finished()) return {};
   if (event.remesh && progress_.last_attempt + same_strain < event.strain)
     return {at_strains, fmt::format("the deck asks for it at strain {:g}", event.strain)};
-  if (asked_for_soon()) return {};
+  if (worn_can_wait()) return {};
   if (const std::string reason = worn_elements(); !reason.empty()) return {worn_out, reason};
   return {};
 }

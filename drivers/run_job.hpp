@@ -69,7 +69,7 @@ class RunJob {
   /// Stores, writes checkpoints and remeshes, as is due at this strain.
   void arrive();
   Event event_here() const;
-  bool asked_for_soon() const;
+  bool worn_can_wait() const;
   DueRemeshing due_here(const Event& event);
   /// The body as it is.
   void store();

@@ -62,7 +62,7 @@ json summary_of(const Sandbox& sandbox) {
 
 TEST(Remeshing, OfWornElementsComesByItself) {
   const Sandbox sandbox;
-  run_deck(sandbox, 2, deck_of(grown, to_the_end, wears_soon), "run");
+  run_deck(sandbox, 2, deck_of(grown, "final_strain = 0.07\n", wears_soon), "run");
   ASSERT_FALSE(HasFailure());
   const json s = summary_of(sandbox);
   ASSERT_GE(s.at("remeshings").size(), 2u);
@@ -77,6 +77,7 @@ TEST(Remeshing, OfWornElementsComesByItself) {
     EXPECT_NE(slurp(sandbox.path() / "run/log.txt").find(r["reason"].get<std::string>()),
               std::string::npos);
   }
+  EXPECT_LE(last, 0.07);  // not so near the end
   // Both sides of each are stored, besides start and end.
   EXPECT_EQ(state_count(sandbox.path() / "run"), 2 + 2 * s["remeshings"].size());
   EXPECT_TRUE(s.at("failed_remeshings").empty());
