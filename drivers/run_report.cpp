@@ -45,7 +45,8 @@ const std::pair<GrainColumn, std::vector<GrainColumn>>& grain_columns() {
        {"slip", [](Grain g) { return g.slip.mean; }},
        {"slip_min", [](Grain g) { return g.slip.min; }},
        {"slip_max", [](Grain g) { return g.slip.max; }},
-       {"elastic_energy", [](Grain g) { return g.elastic_energy; }}}};
+       {"elastic_energy", [](Grain g) { return g.elastic_energy; }},
+       {"volume_at_zero_pressure", [](Grain g) { return g.volume_at_zero_pressure; }}}};
   return columns;
 }
 
@@ -80,7 +81,9 @@ results::RemeshingSummary remeshing_summary(const remap::RemeshReport& r) {
     return results::RemeshedState{b.mean_spread,
                                   {b.g.mean, b.g.min, b.g.max},
                                   {b.slip.mean, b.slip.min, b.slip.max},
-                                  b.elastic_energy};
+                                  b.elastic_energy,
+                                  b.volume,
+                                  b.volume_at_zero_pressure};
   };
   results::RemeshingSummary s;
   s.strain = r.strain;

@@ -82,11 +82,18 @@ BodyStatistics body(const std::vector<GrainStatistics>& grains) {
   b.slip = over_grains(grains, &GrainStatistics::slip);
   for (const GrainStatistics& g : grains) {
     b.volume += g.volume;
+    b.volume_at_zero_pressure += g.volume_at_zero_pressure;
     b.elastic_energy += g.elastic_energy;
   }
   for (const GrainStatistics& g : grains)
     b.mean_spread += g.spread / static_cast<double>(grains.size());
   return b;
+}
+
+/// Both volumes, by the ratio they have.
+void set_volume(GrainStatistics& grain, double volume) {
+  grain.volume_at_zero_pressure *= volume / grain.volume;
+  grain.volume = volume;
 }
 
 /// Least radius ratio in the frame scaled back to isotropy: where sizes follow the body's shape
@@ -112,8 +119,8 @@ std::string audit(const mesh::Snapshot& before, const mesh::Snapshot& after,
   if (old_volumes.size() != new_volumes.size() || old_volumes.empty())
     throw core::InternalError("remeshing changed the number of grains");
   for (std::size_t g = 0; g < old_volumes.size(); ++g) {
-    report.grains_before[g].volume = old_volumes[g];
-    report.grains_after[g].volume = new_volumes[g];
+    set_volume(report.grains_before[g], old_volumes[g]);
+    set_volume(report.grains_after[g], new_volumes[g]);
   }
   report.before = body(report.grains_before);
   report.after = body(report.grains_after);

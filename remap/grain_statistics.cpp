@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/parallel.hpp"
 #include "core/rotation.hpp"
@@ -36,6 +37,7 @@ class Gatherer {
     const std::size_t last = static_cast<std::size_t>(end - cells_.begin()) * points_;
     GrainStatistics s;
     for (std::size_t i = first; i < last; ++i) s.volume += volumes_[i];
+    s.volume_at_zero_pressure = s.volume * reference_share(begin, end);
     if (g_) s.g = statistics(*g_, first, last, s.volume);
     if (slip_) s.slip = statistics(*slip_, first, last, s.volume);
     if (!orientation_ || first == last) return s;
@@ -46,6 +48,17 @@ class Gatherer {
   }
 
  private:
+  /// Of the elements' volumes at zero pressure in their volumes.
+  double reference_share(std::vector<int>::const_iterator begin,
+                         std::vector<int>::const_iterator end) const {
+    if (!volume_ || !reference_volume_ || begin == end) return 1;
+    const auto sum = [&](const Field& field) {
+      return std::accumulate(field.values.begin() + (begin - cells_.begin()),
+                             field.values.begin() + (end - cells_.begin()), 0.0);
+    };
+    return sum(*reference_volume_) / sum(*volume_);
+  }
+
   /// Components are averaged: a field of twelve equal ones is like a field of one.
   FieldStatistics statistics(const Field& field, std::size_t first, std::size_t last,
                              double volume) const {

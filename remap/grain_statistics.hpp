@@ -14,7 +14,8 @@ struct FieldStatistics {
 };
 
 struct GrainStatistics {
-  double volume = 0;  ///< L^3, by the rule of the snapshot's points
+  double volume = 0;                   ///< L^3, by the rule of the snapshot's points
+  double volume_at_zero_pressure = 0;  ///< L^3; the volume if the snapshot has no such one
   /// Weighted by volume (core::mean_rotation). Identity if the snapshot has no orientations.
   core::Quaternion orientation = core::Quaternion::Identity();
   double spread = 0;        ///< mean angle of the points' orientations from it [degrees], by volume

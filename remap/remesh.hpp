@@ -38,10 +38,11 @@ struct RemeshingOptions {
 
 /// Over all grains.
 struct BodyStatistics {
-  double volume = 0;          ///< L^3
-  double mean_spread = 0;     ///< over the grains [degrees]
-  FieldStatistics g, slip;    ///< weighted by volume; MPa, 1
-  double elastic_energy = 0;  ///< MPa L^3
+  double volume = 0;                   ///< L^3
+  double volume_at_zero_pressure = 0;  ///< L^3
+  double mean_spread = 0;              ///< over the grains [degrees]
+  FieldStatistics g, slip;             ///< weighted by volume; MPa, 1
+  double elastic_energy = 0;           ///< MPa L^3
 };
 
 struct RemeshReport {

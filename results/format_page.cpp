@@ -132,8 +132,8 @@ in words, `attempts` until it succeeded, `elements_before`, `elements_after`, `m
 `rms_grain_volume_change` (relative), `mean_grain_rotation` and `max_grain_rotation` (of their mean
 orientations, degrees), `max_spread_change` (degrees); `before` and `after`, each with `mean_spread`
 (mean over the grains of the volume-weighted mean angle from a grain's mean orientation, degrees), `g`
-and `slip` (mean, least, largest) and `elastic_energy` (MPa L^3); `stress_before` (von Mises stress of
-the volume average, MPa), `strain_to_reload` (until that stress is back at 99 % of it, null if it never
+and `slip` (mean, least, largest), `elastic_energy` (MPa L^3), `volume` and `volume_at_zero_pressure`
+(L^3); `stress_before` (von Mises stress of the volume average, MPa), `strain_to_reload` (until that stress is back at 99 % of it, null if it never
 was), `reloaded_stress_ratio` (the stress 0.01 of strain later over the curve before, continued in a
 straight line; null if the run or the mesh did not last so long).
 
@@ -141,8 +141,8 @@ straight line; null if the run or the mesh did not last so long).
 
 A row a grain, of the remeshing that made the mesh of that number: volume (L^3), rotation of its mean
 orientation (degrees), spread (degrees), mean and extremes of g (MPa) and accumulated slip, elastic
-energy (MPa L^3), before and after. `before` is the deformed state, `after` the same state on the new
-mesh, before its first step.
+energy (MPa L^3), volume at zero pressure (L^3), before and after. `before` is the deformed state,
+`after` the same state on the new mesh, before its first step.
 )";
 
 const char* type_name(hdf5::Number type) {

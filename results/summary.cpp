@@ -10,21 +10,27 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const RemeshedState& s) {
-  return {{"mean_spread", s.mean_spread},
-          {"g", s.g},
-          {"slip", s.slip},
-          {"elastic_energy", s.elastic_energy}};
-}
-
-RemeshedState state_from(const Json& j) {
-  return {j.at("mean_spread"), j.at("g"), j.at("slip"), j.at("elastic_energy")};
-}
-
 Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 std::optional<double> optional_from(const Json& j) {
   return j.is_null() ? std::nullopt : std::optional<double>(j.get<double>());
+}
+
+Json to_json(const RemeshedState& s) {
+  return {{"mean_spread", s.mean_spread},
+          {"g", s.g},
+          {"slip", s.slip},
+          {"elastic_energy", s.elastic_energy},
+          {"volume", or_null(s.volume)},
+          {"volume_at_zero_pressure", or_null(s.volume_at_zero_pressure)}};
+}
+
+RemeshedState state_from(const Json& j) {
+  const auto optional = [&](const char* key) {
+    return j.contains(key) ? optional_from(j.at(key)) : std::nullopt;
+  };
+  return {j.at("mean_spread"),    j.at("g"),          j.at("slip"),
+          j.at("elastic_energy"), optional("volume"), optional("volume_at_zero_pressure")};
 }
 
 Json to_json(const RemeshingSummary& r) {

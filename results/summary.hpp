@@ -16,6 +16,8 @@ struct RemeshedState {
   std::array<double, 3> g{};     ///< mean, least, largest [MPa]
   std::array<double, 3> slip{};  ///< likewise
   double elastic_energy = 0;     ///< MPa L^3
+  /// L^3; checkpoints of earlier versions have none.
+  std::optional<double> volume, volume_at_zero_pressure;
 };
 
 struct RemeshingSummary {
