@@ -232,8 +232,10 @@ void read_transport(Deck::Table& t, remap::RemeshingOptions& o) {
   o.transport.stress = t.text(
       "stress", {.fallback = o.transport.stress,
                  .choices = {"zero", "carried"},
-                 .help = "Stresses after a remeshing: zero (the paper), or carried over like the "
-                         "state and brought to equilibrium with the boundary held."});
+                 .help = "Stresses after a remeshing: zero (the paper) but for each grain's mean "
+                         "pressure, without which its elastic compression would be lost volume; or "
+                         "carried over like the state and brought to equilibrium with the "
+                         "boundary held."});
   o.max_grain_rotation = t.number(
       "max_grain_rotation", {.unit = "degrees",
                              .fallback = o.max_grain_rotation,

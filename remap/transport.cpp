@@ -10,6 +10,7 @@
 #include "mesh/shape_functions.hpp"
 #include "remap/donor_average.hpp"
 #include "remap/grain_correction.hpp"
+#include "remap/grain_volumes.hpp"
 #include "remap/locator.hpp"
 
 namespace polyslip::remap {
@@ -229,7 +230,10 @@ mesh::Snapshot transport(const mesh::Snapshot& old, mesh::Mesh mesh,
     if (carry.carries(field)) result.fields.push_back(carry(field));
   result.mesh = std::move(mesh);
   if (options.state == "corrected") correct_grains(old, result, threads);
-  if (options.stress == "carried") carry_volumes(old, donors.element, carry, result);
+  if (options.stress == "carried")
+    carry_volumes(old, donors.element, carry, result);
+  else
+    keep_grain_compression(old, result);
   return result;
 }
 

@@ -14,7 +14,8 @@ struct TransportOptions {
   /// that holds it. "corrected": the same, then each grain gets its mean orientation, its spread
   /// and its means of scalars back (remap/grain_correction.hpp).
   std::string state = "element";
-  /// "zero": fields that core::Transport::reset_to_zero names vanish, and so does the pressure.
+  /// "zero": fields that core::Transport::reset_to_zero names vanish, but for each grain's mean
+  /// pressure (remap/grain_volumes.hpp).
   /// "carried": they go with the state, and so do volumes over those at zero pressure.
   std::string stress = "zero";
 };
