@@ -179,7 +179,7 @@ void read_wear(Deck::Table& t, remap::RemeshingOptions& o) {
        .max = 1,
        .exclusive_max = true,
        .help =
-           "The mesh is worn when its worst radius ratio, in the frame scaled back to isotropy, "
+           "The mesh is worn when its worst radius ratio, in the frame of sizes (docs/theory.md), "
            "is below this share of what it was when the mesh was new; 0: never."});
   w.jacobian_share = t.number(
       "jacobian_share",

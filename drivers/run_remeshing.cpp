@@ -34,8 +34,11 @@ remap::Wear RunJob::wear() const {
   const auto owned = [&](const std::vector<core::Vec3>& values) {
     return std::span(values).first(part.owned_nodes);
   };
-  const core::Mat3 frame = remap::isotropy_frame(
-      solver::all_gather(comm_, remap::frame_moments(owned(part.initial), owned(part.positions))));
+  const core::Mat3 frame =
+      remap::size_scale(
+          solver::all_gather(comm_, remap::part_boxes(owned(part.initial), owned(part.positions))),
+          options_.remeshing.shares())
+          .asDiagonal();
   const int threads = solver::size_of(comm_) > 1 ? 1 : core::thread_count(request_.jobs);
   return remap::whole_wear(
       solver::all_gather(comm_, remap::measure_part(part.elements, part.positions, part.rates,

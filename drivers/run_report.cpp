@@ -63,7 +63,7 @@ std::string step_text(const solver::StepRecord& step, double seconds_left) {
 
 std::string remeshing_text(const remap::RemeshReport& r) {
   return fmt::format(
-      "remeshing at strain {:.4g}: {} elements -> {}; worst radius ratio, scaled back to isotropy, "
+      "remeshing at strain {:.4g}: {} elements -> {}; worst radius ratio, in the frame of sizes, "
       "{:.3f} -> {:.3f}; grain "
       "volumes changed by {:.3f} % rms, {:.3f} % at worst; mean orientations of grains moved by "
       "{:.3f} degrees on average, {:.3f} at worst; spreads {:.3f} -> {:.3f} degrees, {:.3f} at "

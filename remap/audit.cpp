@@ -96,10 +96,10 @@ void set_volume(GrainStatistics& grain, double volume) {
   grain.volume = volume;
 }
 
-/// Least radius ratio in the frame scaled back to isotropy: where sizes follow the body's shape
-/// even perfect elements are flat in space.
-double worst_radius_ratio(const mesh::Snapshot& s, int threads) {
-  const core::Mat3 frame = isotropy_frame(initial_positions(s), s.mesh.nodes);
+/// Least radius ratio in the frame of sizes: where these follow the body's shape even perfect
+/// elements are flat in space.
+double worst_radius_ratio(const mesh::Snapshot& s, const RemeshingOptions& options, int threads) {
+  const core::Mat3 frame = meshing_scale(s.mesh, options).asDiagonal();
   return measure_wear(s.mesh.tetrahedra, s.mesh.nodes, {}, frame, {}, threads).worst_radius_ratio;
 }
 
@@ -109,8 +109,8 @@ std::string audit(const mesh::Snapshot& before, const mesh::Snapshot& after,
                   const RemeshingOptions& options, RemeshReport& report, int threads) {
   report.elements_before = before.mesh.element_count();
   report.elements_after = after.mesh.element_count();
-  report.min_radius_ratio_before = worst_radius_ratio(before, threads);
-  report.min_radius_ratio_after = worst_radius_ratio(after, threads);
+  report.min_radius_ratio_before = worst_radius_ratio(before, options, threads);
+  report.min_radius_ratio_after = worst_radius_ratio(after, options, threads);
   report.grains_before = grain_statistics(before, threads);
   report.grains_after = grain_statistics(after, threads);
   // Volumes exactly, by a rule of higher degree than that of the points.

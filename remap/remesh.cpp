@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/parallel.hpp"
 #include "remap/audit.hpp"
 
@@ -13,12 +10,7 @@ namespace polyslip::remap {
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options) {
   Eigen::AlignedBox3d box;
   for (const core::Vec3& x : mesh.nodes) box.extend(x);
-  const core::Vec3 stretch = mesh.size.cwiseQuotient(box.sizes());
-  core::Vec3 scale;
-  for (int a = 0; a < 3; ++a)
-    scale[a] = std::pow(stretch[a],
-                        stretch[a] > 1 ? options.orthotropic_share : options.lengthening_share);
-  return scale;
+  return size_scale(mesh.size, box.sizes(), options.shares());
 }
 
 mesh::Geometry regularised_geometry(const mesh::Mesh& old, const RemeshingOptions& remeshing,

@@ -10,6 +10,7 @@
 #include "mesh/snapshot.hpp"
 #include "mesh/volume_mesher.hpp"
 #include "remap/grain_statistics.hpp"
+#include "remap/size_frame.hpp"
 #include "remap/transport.hpp"
 #include "remap/wear.hpp"
 
@@ -28,6 +29,7 @@ struct RemeshingOptions {
   /// Share of the lengthening that element sizes follow: 0 keeps their size along a direction in
   /// which the polycrystal was drawn out (the paper), 1 the number of elements.
   double lengthening_share = 0.5;
+  SizeShares shares() const { return {orthotropic_share, lengthening_share}; }
   TransportOptions transport{"corrected", "zero"};  ///< docs/remeshing-accuracy.md says why
   // Limits of a remeshing; beyond them the run stops and names the grain.
   double max_grain_volume_change = 0.005;  ///< relative
@@ -48,7 +50,7 @@ struct BodyStatistics {
 struct RemeshReport {
   double strain = 0;
   int elements_before = 0, elements_after = 0;
-  double min_radius_ratio_before = 0, min_radius_ratio_after = 0;  ///< frame scaled to isotropy
+  double min_radius_ratio_before = 0, min_radius_ratio_after = 0;  ///< frame of sizes
   double max_grain_volume_change = 0;                              ///< relative
   double rms_grain_volume_change = 0;
   double max_mean_rotation = 0, mean_mean_rotation = 0;  ///< of grains' mean orientations, degrees
@@ -67,9 +69,8 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
                       const std::function<void(const std::string&)>& log);
 
-/// The frame in which sizes are taken: along each axis (size / extent)^share, of the polycrystal's
-/// extent and its size at zero strain, with the one share where it has become shorter and the other
-/// where it has become longer.
+/// The frame in which sizes are taken (size_scale), of the polycrystal's extent and its size at
+/// zero strain.
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options);
 
 /// The shapes of a worn mesh after the regularisation of what closes, in the frame of sizes; its

@@ -128,7 +128,7 @@ the run stayed on the old mesh), `stress_final_mpa` (3x3, volume average), `cpu_
 
 Of each remeshing: `strain`, `trigger` ("at_strains", "worn elements" or "failed step") and its `reason`
 in words, `attempts` until it succeeded, `elements_before`, `elements_after`, `min_radius_ratio_before`,
-`min_radius_ratio_after` (in the frame scaled back to isotropy), `copied_faces`; over the grains, `max_grain_volume_change` and
+`min_radius_ratio_after` (in the frame of sizes, docs/theory.md), `copied_faces`; over the grains, `max_grain_volume_change` and
 `rms_grain_volume_change` (relative), `mean_grain_rotation` and `max_grain_rotation` (of their mean
 orientations, degrees), `max_spread_change` (degrees); `before` and `after`, each with `mean_spread`
 (mean over the grains of the volume-weighted mean angle from a grain's mean orientation, degrees), `g`

@@ -1,4 +1,5 @@
-// How the elements of a run wear: `wear_history RUN_FOLDER`, one line a stored state.
+// How the elements of a run wear: `wear_history RUN_FOLDER`, one line a stored state; in the frame
+// of sizes of a deck that leaves its shares as they are.
 
 #include <fmt/format.h>
 
@@ -6,7 +7,7 @@
 #include <exception>
 
 #include "core/error.hpp"
-#include "remap/wear.hpp"
+#include "remap/remesh.hpp"
 #include "results/state_file.hpp"
 #include "results/state_series.hpp"
 
@@ -26,7 +27,7 @@ std::vector<core::Vec3> rates_of(const mesh::Snapshot& snapshot) {
 void print(const mesh::Snapshot& s) {
   remap::WearOptions options;
   options.inversion_strain = 0.2;
-  const auto frame = remap::isotropy_frame(remap::initial_positions(s), s.mesh.nodes);
+  const core::Mat3 frame = remap::meshing_scale(s.mesh, {}).asDiagonal();
   const auto rates = rates_of(s);
   const auto wear = remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, rates, frame, options, 1);
   fmt::print("{:8.4f} {:5d} {:9d} {:8.4f} {:8.4f} {:8.3f} {:9.4f}\n", s.strain, s.mesh_number,
