@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 #include "core/error.hpp"
+#include "mesh/common_plane.hpp"
 #include "mesh/flattening.hpp"
 #include "mesh/inner_edges.hpp"
 #include "mesh/projection.hpp"
@@ -17,9 +17,6 @@ namespace polyslip::mesh {
 namespace {
 
 using core::Vec3;
-
-/// A domain face is flat if its points differ by less than this, relative to the domain.
-constexpr double flat = 1e-10;
 
 /// Order of positions, for looking them up.
 struct Before {
@@ -77,28 +74,22 @@ BoundaryMesher::BoundaryMesher(const Geometry& geometry, const MeshingOptions& o
 /// or the one that the face's area has turned to (in simple shear).
 std::optional<Plane> BoundaryMesher::common_plane(int domain_face) const {
   const Plane& own = geometry_.domain.faces[domain_face].plane;
-  const double rounding = flat * geometry_.size.maxCoeff();
+  const double rounding = plane_rounding(geometry_.size);
   Vec3 area = Vec3::Zero();
-  for (std::size_t f = 0; f < geometry_.faces.size(); ++f)
-    if (geometry_.topology.faces[f].domain_face == domain_face)
-      area += area_vector(geometry_.faces[f]);
-  for (const Vec3& normal : {own.normal, Vec3(area.normalized())}) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (std::size_t f = 0; f < geometry_.faces.size(); ++f) {
-      if (geometry_.topology.faces[f].domain_face != domain_face) continue;
-      for (const auto& x : geometry_.faces[f].points) {
-        low = std::min(low, normal.dot(x));
-        high = std::max(high, normal.dot(x));
-      }
-    }
-    if (!(high - low <= rounding)) continue;
-    // Of the values that rounding gives: the plane of the undeformed domain if it is among them.
-    const double margin = geometry_.from_mesh ? 0 : rounding;
-    const bool kept =
-        normal == own.normal && own.offset >= low - margin && own.offset <= high + margin;
-    return Plane{normal, kept ? own.offset : low};
+  std::vector<Vec3> points;
+  for (std::size_t f = 0; f < geometry_.faces.size(); ++f) {
+    if (geometry_.topology.faces[f].domain_face != domain_face) continue;
+    const auto& shape = geometry_.faces[f];
+    area += area_vector(shape);
+    points.insert(points.end(), shape.points.begin(), shape.points.end());
   }
-  return std::nullopt;
+  const auto common = mesh::common_plane(own.normal, area, points, rounding);
+  if (!common) return std::nullopt;
+  // Of the values that rounding gives: the plane of the undeformed domain if it is among them.
+  const double margin = geometry_.from_mesh ? 0 : rounding;
+  const bool kept = common->normal == own.normal && own.offset >= common->low - margin &&
+                    own.offset <= common->high + margin;
+  return Plane{common->normal, kept ? own.offset : common->low};
 }
 
 void BoundaryMesher::find_planes() {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "mesh/common_plane.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/star_mesh.hpp"
 
@@ -40,8 +41,9 @@ class Opener {
         stars_(scaled_nodes(), corners(), mesh.node_count()),
         start_(mesh.nodes),
         on_surface_(mesh.nodes.size(), false),
-        fixed_(mesh.nodes.size(), {false, false, false}) {
+        fixed_(mesh.nodes.size(), false) {
     find_kinds();
+    find_planes();
   }
 
   DeformedRegularisation run() {
@@ -80,29 +82,75 @@ class Opener {
     return tets;
   }
 
-  /// Surface nodes, and the axes along which domain faces hold them; oblique ones hold them whole.
   void find_kinds() {
     is_corner_.assign(mesh_.nodes.size(), false);
     for (const auto& t : mesh_.tetrahedra)
       for (int i = 0; i < 4; ++i) is_corner_[t[i]] = true;
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const int d = mesh_.topology.faces[mesh_.triangle_face[i]].domain_face;
-      for (const int n : mesh_.triangles[i]) {
-        on_surface_[n] = true;
-        if (d >= 0) hold(n, mesh_.domain.faces[d].plane.normal);
-      }
-    }
+    for (const auto& t : mesh_.triangles)
+      for (const int n : t) on_surface_[n] = true;
     for (const auto& p : mesh_.periodic_nodes)
-      for (const int n : {p.slave, p.master}) fixed_[n] = {true, true, true};
+      for (const int n : {p.slave, p.master}) fixed_[n] = true;
   }
 
-  void hold(int node, const Vec3& normal) {
-    int axis = 0;
-    normal.cwiseAbs().maxCoeff(&axis);
-    if (std::abs(normal[axis]) == normal.norm())
-      fixed_[node][axis] = true;
-    else
-      fixed_[node] = {true, true, true};
+  /// What holds the nodes of domain faces: the plane that the face is, or the axis that it faces;
+  /// curved oblique ones hold them whole.
+  void find_planes() {
+    const std::size_t count = mesh_.domain.faces.size();
+    std::vector<std::array<int, 2>> pairs;
+    std::vector<Vec3> area(count, Vec3::Zero());
+    std::vector<std::vector<Vec3>> points(count);
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      const int d = mesh_.topology.faces[mesh_.triangle_face[i]].domain_face;
+      if (d < 0) continue;
+      const auto& t = mesh_.triangles[i];
+      const Vec3& a = mesh_.nodes[t[0]];
+      area[d] += (mesh_.nodes[t[1]] - a).cross(mesh_.nodes[t[2]] - a) / 2;
+      for (const int n : t) {
+        pairs.push_back({n, d});
+        points[d].push_back(mesh_.nodes[n]);
+      }
+    }
+    node_faces_ = DomainFaceLists(mesh_.nodes.size(), pairs);
+    for (std::size_t d = 0; d < count; ++d) {
+      const Vec3& own = mesh_.domain.faces[d].plane.normal;
+      const auto plane = common_plane(own, area[d], points[d], plane_rounding(mesh_.size));
+      normals_.push_back(plane ? plane->normal : own);
+      const bool along_axis = own.cwiseAbs().maxCoeff() == own.norm();
+      if (!plane && !along_axis)
+        for (const auto& [node, face] : pairs)
+          if (face == static_cast<int>(d)) fixed_[node] = true;
+    }
+  }
+
+  /// Of planes through the node's place at the start; their normals, scaled as positions are if
+  /// asked.
+  std::vector<Plane> planes_of(int node, bool scaled) const {
+    std::vector<Plane> planes;
+    for (const int d : node_faces_[node]) {
+      const Vec3& n = normals_[d];
+      if (scaled)
+        planes.push_back({n.cwiseQuotient(scale_).normalized(), 0});
+      else
+        planes.push_back({n, n.dot(start_[node])});
+    }
+    return planes;
+  }
+
+  void keep_in_planes(int node, Vec3& x) const {
+    if (fixed_[node])
+      x = start_[node];
+    else if (!node_faces_[node].empty())
+      put_on_planes(planes_of(node, false), x);
+  }
+
+  /// The part of a gradient in the directions that the node has, scaled.
+  Vec3 in_planes(int node, const Vec3& gradient) const {
+    if (fixed_[node]) return Vec3::Zero();
+    if (node_faces_[node].empty()) return gradient;
+    const Directions free = free_directions(planes_of(node, true));
+    Vec3 part = Vec3::Zero();
+    for (int i = 0; i < free.count; ++i) part += free[i].dot(gradient) * free[i];
+    return part;
   }
 
   double ratio(int t) const {
@@ -187,9 +235,7 @@ class Opener {
     const double regular = length * length * length / (6 * std::sqrt(2.0));
     const Vec3 from = stars_.position(node);
     const Energy now = energy(node, shift * regular);
-    Vec3 g = now.gradient;
-    for (int a = 0; a < 3; ++a)
-      if (fixed_[node][a]) g[a] = 0;
+    const Vec3 g = in_planes(node, now.gradient);
     if (!(g.norm() > 0) || !std::isfinite(g.norm())) return false;
     double step = longest_step * length;
     const Vec3 origin = start_[node].cwiseProduct(scale_);
@@ -209,8 +255,7 @@ class Opener {
     for (int n = 0; n < mesh_.node_count(); ++n) {
       if (!is_corner_[n] || stars_.position(n) == start_[n].cwiseProduct(scale_)) continue;
       Vec3 x = stars_.position(n).cwiseQuotient(scale_);
-      for (int a = 0; a < 3; ++a)
-        if (fixed_[n][a]) x[a] = start_[n][a];
+      keep_in_planes(n, x);
       moves[n] = x - start_[n];
       mesh_.nodes[n] = x;
     }
@@ -220,8 +265,7 @@ class Opener {
         const Vec3 move = (moves[t[i]] + moves[t[j]]) / 2;
         if (move == Vec3::Zero()) continue;
         Vec3 x = start_[t[4 + k]] + move;
-        for (int a = 0; a < 3; ++a)
-          if (fixed_[t[4 + k]][a]) x[a] = start_[t[4 + k]][a];
+        keep_in_planes(t[4 + k], x);
         mesh_.nodes[t[4 + k]] = x;
       }
   }
@@ -232,7 +276,9 @@ class Opener {
   StarMesh stars_;  ///< scaled
   std::vector<Vec3> start_;
   std::vector<char> on_surface_, is_corner_;
-  std::vector<std::array<bool, 3>> fixed_;  ///< [nodes] axes
+  std::vector<char> fixed_;  ///< [nodes]
+  DomainFaceLists node_faces_;
+  std::vector<Vec3> normals_;  ///< [domain faces] across which their nodes stay
 };
 
 }  // namespace

@@ -90,6 +90,32 @@ TEST(DeformedRegularisation, OpensWhatHasClosed) {
   }
 }
 
+/// Faces of the domain that have turned, in simple shear, stay planes, and their nodes move in
+/// them.
+TEST(DeformedRegularisation, KeepsLeaningFacesPlane) {
+  Mesh mesh = polycrystal();
+  constexpr double shear = 0.8;
+  for (Vec3& x : mesh.nodes) x[0] += shear * x[2];
+  const auto start = mesh.nodes;
+  const auto result = regularise_deformed(mesh, Vec3::Ones(), {.least_radius_ratio = 0.3});
+  EXPECT_GT(result.moved, 0);
+  int moved = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const int d = mesh.topology.faces[mesh.triangle_face[i]].domain_face;
+    if (d < 0) continue;
+    for (const int n : mesh.triangles[i]) {
+      const Vec3& x = mesh.nodes[n];
+      if (d >= 2) {
+        EXPECT_EQ(x[d / 2], start[n][d / 2]);
+      } else {
+        EXPECT_NEAR(x[0] - shear * x[2], d == 0 ? 0 : mesh.size[0], 1e-12);
+        moved += std::abs(x[2] - start[n][2]) > 1e-3;
+      }
+    }
+  }
+  EXPECT_GT(moved, 0);
+}
+
 TEST(DeformedRegularisation, MovesSurfacesNoFartherThanAsked) {
   Mesh mesh = polycrystal();
   for (Vec3& x : mesh.nodes) x[0] += 2.5 * x[2];  // a shear wears every element
