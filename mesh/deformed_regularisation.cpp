@@ -295,4 +295,17 @@ DeformedRegularisation regularise_deformed(Mesh& mesh, const Vec3& scale,
   return result;
 }
 
+DeformedRegularisation open_thin_elements(Mesh& mesh, const Vec3& scale,
+                                          DeformedRegularisationOptions options) {
+  constexpr int doublings = 2;
+  const Mesh start = mesh;
+  DeformedRegularisation result = regularise_deformed(mesh, scale, options);
+  for (int i = 0; i < doublings && result.elements_after > 0; ++i) {
+    options.largest_move *= 2;
+    mesh = start;
+    result = regularise_deformed(mesh, scale, options);
+  }
+  return result;
+}
+
 }  // namespace polyslip::mesh

@@ -11,6 +11,7 @@
 
 #include "core/timer.hpp"
 #include "core/types.hpp"
+#include "mesh/deformed_regularisation.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/tessellation.hpp"
 #include "mesh/volume_mesher.hpp"
@@ -75,7 +76,8 @@ struct MeshingReport {
   int straightened = 0;                 ///< mid nodes pulled towards their chord to keep det J > 0
   int nearest_points = 0;               ///< nodes beyond their old face, put on its nearest point
   double mean_O = 0;                    ///< mean over grains of eq. (5)
-  double progression = 1;  ///< largest ratio of adjacent 1D lengths (copied edges left out)
+  double progression = 1;         ///< largest ratio of adjacent 1D lengths (copied edges left out)
+  DeformedRegularisation opened;  ///< of the new mesh of a deformed polycrystal
   int conformal_faces = 0, circle_faces = 0;  ///< laid flat by these maps, not by projection
   core::StageTimes times;  ///< of this process: "faces", "meshing" (without the meshers),
                            ///< "sliding", "assembly"

@@ -6,6 +6,21 @@
 #include "remap/audit.hpp"
 
 namespace polyslip::remap {
+namespace {
+
+using Log = std::function<void(const std::string&)>;
+
+void log_opened(double strain, const char* of, const mesh::DeformedRegularisation& opened,
+                const Log& log) {
+  if (opened.elements_before == 0) return;
+  log(fmt::format(
+      "remeshing at strain {:.6g}: {}{} thin elements opened ({} left), {} nodes of grain "
+      "boundaries moved by at most {:.3g} of the grain size",
+      strain, of, opened.elements_before, opened.elements_after, opened.moved,
+      opened.largest_move));
+}
+
+}  // namespace
 
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options) {
   Eigen::AlignedBox3d box;
@@ -15,15 +30,8 @@ core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options
 
 mesh::Geometry regularised_geometry(const mesh::Mesh& old, const RemeshingOptions& remeshing,
                                     mesh::DeformedRegularisation& regularisation) {
-  // Nodes move no farther than it takes, for volumes' sake.
-  constexpr double farthest = 0.5;
-  mesh::DeformedRegularisationOptions options;
-  mesh::Mesh regular;
-  do {
-    regular = old;
-    regularisation = mesh::regularise_deformed(regular, meshing_scale(old, remeshing), options);
-    options.largest_move *= 2;
-  } while (regularisation.elements_after > 0 && options.largest_move <= farthest);
+  mesh::Mesh regular = old;
+  regularisation = mesh::open_thin_elements(regular, meshing_scale(old, remeshing));
   mesh::Geometry geometry = mesh::geometry_of(regular);
   geometry.volumes = mesh::grain_volumes(old);
   return geometry;
@@ -41,13 +49,8 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
   for (std::size_t i = 0; i < report.meshing.copied_faces.size(); ++i)
     log(fmt::format("face {}: not remeshed, its old mesh is kept: {}",
                     report.meshing.copied_faces[i] + 1, report.meshing.why_copied[i]));
-  const auto& opened = report.regularisation;
-  if (opened.elements_before > 0)
-    log(fmt::format(
-        "remeshing at strain {:.6g}: {} thin elements opened ({} left), {} nodes of grain "
-        "boundaries moved by at most {:.3g} of the grain size",
-        old.strain, opened.elements_before, opened.elements_after, opened.moved,
-        opened.largest_move));
+  log_opened(old.strain, "", report.regularisation, log);
+  log_opened(old.strain, "of the new mesh ", report.meshing.opened, log);
   const std::string repairs = mesh::repairs_text(report.meshing);
   if (!repairs.empty()) log(fmt::format("remeshing at strain {:.6g}: {}", old.strain, repairs));
   mesh::check(mesh);

@@ -12,6 +12,7 @@
 #include "mesh/volume_correction.hpp"
 #include "remap/remesh.hpp"
 #include "results/state_file.hpp"
+#include "results/state_series.hpp"
 #include "support/grain_flow.hpp"
 
 namespace {
@@ -26,7 +27,8 @@ struct Options {
   remap::RemeshingOptions remeshing;
   test::GrainFlow::Options flow;
   mesh::MeshingOptions meshing;
-  std::string from;
+  std::string from, run;
+  std::vector<int> only;
 };
 
 Vec3 isotropic(double strain) { return {std::exp(-strain), 1, std::exp(strain)}; }
@@ -57,7 +59,8 @@ int inverted(const mesh::Mesh& mesh) {
   return count;
 }
 
-/// The worst elements: radius ratio, grain, and for each corner v(ertex), e(dge), f(ace), i(nside).
+/// The worst elements, in the frame of sizes: radius ratio, grain, and for each corner v(ertex),
+/// e(dge), f(ace), i(nside).
 void list_worst(const mesh::Mesh& mesh, const Vec3& scale, int count) {
   std::vector<char> kind(mesh.nodes.size(), 'i');
   std::vector<int> owner(mesh.nodes.size(), 0);
@@ -92,10 +95,10 @@ void list_worst(const mesh::Mesh& mesh, const Vec3& scale, int count) {
 /// Whether it got a new mesh.
 bool remesh(const Options& o, double strain, mesh::Mesh& mesh, mesh::MesherPool& pool) {
   const int bad = inverted(mesh);
-  const auto worn = test::scaled_quality(mesh, isotropic(strain));
+  const Vec3 frame = remap::meshing_scale(mesh, o.remeshing);
+  const auto worn = test::scaled_quality(mesh, frame);
   const auto before = mesh::grain_volumes(mesh);
   const double start = cpu(pool);
-  const Vec3 frame = remap::meshing_scale(mesh, o.remeshing);
   mesh::MeshingReport report;
   mesh::DeformedRegularisation regular;
   try {
@@ -117,19 +120,35 @@ bool remesh(const Options& o, double strain, mesh::Mesh& mesh, mesh::MesherPool&
       "  {:.2f} worn {:.3f} ({} inverted, {} -> {} thin, {} moved by {:.3f}) -> {:6} elements, iso "
       "{:.3f} {:.3f}, sized {:.3f} "
       "{:.3f}, maps {} {}, copied {} of {}, pulled {}, nearest {}, volumes {:.1e} {:.1e}, {} "
-      "faults, "
-      "{:.1f} s\n",
+      "faults, opened {} -> {} thin, {} by {:.3f}, {:.1f} s\n",
       strain, worn.min_radius_ratio, bad, regular.elements_before, regular.elements_after,
       regular.moved, regular.largest_move, mesh.element_count(), iso.min_radius_ratio,
       iso.mean_radius_ratio, sized.min_radius_ratio, sized.mean_radius_ratio,
       report.conformal_faces, report.circle_faces, report.copied_faces.size(),
       mesh.topology.faces.size(), report.straightened, report.nearest_points, c.rms, c.worst,
-      report.faults.size(), cpu(pool) - start);
+      report.faults.size(), report.opened.elements_before, report.opened.elements_after,
+      report.opened.moved, report.opened.largest_move, cpu(pool) - start);
   for (std::size_t i = 0; i < report.copied_faces.size() && o.worst > 0; ++i)
     fmt::print("    face {} copied: {}\n", report.copied_faces[i] + 1, report.why_copied[i]);
-  list_worst(mesh, isotropic(strain), o.worst);
+  list_worst(mesh, frame, o.worst);
   std::fflush(stdout);
   return true;
+}
+
+/// Remeshes each state before a remeshing of a run; whether all got a new mesh.
+bool redo(const Options& o, const std::string& folder, mesh::MesherPool& pool) {
+  const results::StateSeries series(folder);
+  const auto& states = series.states();
+  bool all = true;
+  for (std::size_t i = 1; i < states.size(); ++i) {
+    if (states[i].mesh_number == states[i - 1].mesh_number) continue;
+    if (!o.only.empty() &&
+        std::find(o.only.begin(), o.only.end(), states[i].mesh_number) == o.only.end())
+      continue;
+    auto old = results::read_state(series.path(states[i - 1]));
+    all &= remesh(o, old.strain, old.mesh, pool);
+  }
+  return all;
 }
 
 /// Whether it came to the end.
@@ -174,9 +193,13 @@ int main(int argc, char** argv) {
   app.add_option("--strength", o.flow.strength, "of the random flow");
   app.add_option("--wavelength", o.flow.wavelength, "of the random flow");
   app.add_option("--element-size", o.meshing.element_size);
+  app.add_option("--target", o.meshing.mesher_target);
   app.add_option("--worst", o.worst, "elements to be listed, and why faces were copied");
   app.add_option("--from", o.from, "remesh the mesh of this state instead");
+  app.add_option("--run", o.run, "redo the remeshings of this run folder instead");
+  app.add_option("--only", o.only, "of them, those to the meshes of these numbers");
   CLI11_PARSE(app, argc, argv);
+  if (!o.run.empty()) return redo(o, o.run, *pool) ? 0 : 1;
   if (!o.from.empty()) {
     auto snapshot = results::read_state(o.from);
     return remesh(o, snapshot.strain, snapshot.mesh, *pool) ? 0 : 1;

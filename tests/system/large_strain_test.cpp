@@ -108,8 +108,11 @@ TEST(LargeStrain, SlowRemeshesItselfToAStrainOf1p4) {
   EXPECT_TRUE(summary.at("completed").get<bool>());
   const auto& remeshings = summary.at("remeshings");
   ASSERT_EQ(remeshings.size(), pairs.size());
-  for (const auto& r : remeshings)
+  const double first_worst = mesh::quality(first.mesh).min_radius_ratio;
+  for (const auto& r : remeshings) {
     EXPECT_LE(r.at("copied_faces").get<std::size_t>(), last.mesh.topology.faces.size() / 100);
+    EXPECT_GE(r.at("min_radius_ratio_after").get<double>(), first_worst / 2);
+  }
 }
 
 struct Carried {
