@@ -169,6 +169,7 @@ class BoundaryMesher {
   };
   EdgePlace under_flat_triangle(int face, const std::vector<core::Vec3>& x,
                                 const BoundaryNumbers& numbers) const;
+  EdgeGrading grading(int edge) const;
   void cut_edge(int edge, double arc);
   void mesh_edges();
   /// Nodes by the sizes at the edge's ends, `least_count` elements or more.
@@ -176,9 +177,17 @@ class BoundaryMesher {
   std::array<double, 2> end_elements(int edge) const;
   /// Least length of the elements at each vertex, those of copied edges left out.
   std::vector<double> least_at_vertices() const;
-  /// More elements for edges whose elements are longer than p_l times another's at their vertex;
-  /// whether there were any.
-  bool balance_vertices();
+  /// More elements for edges whose elements are longer than p_l times another's at their vertex,
+  /// until there are none.
+  void balance_vertices();
+  bool refine_at_vertices();
+  struct EdgeEnd {
+    int edge = -1, end = 0;
+  };
+  /// Elements alike on both sides of acute corners of faces; whether some were not.
+  bool balance_corners();
+  bool make_alike(EdgeEnd a, EdgeEnd b);
+  core::Vec3 end_chord(EdgeEnd end) const;
   /// 1D elements along a face's loop: edge and element of it; element k begins at local node k.
   std::vector<std::array<int, 2>> loop_elements(int face) const;
   /// Inner edges that join the same two nodes as another inner edge or a 1D element are forbidden;

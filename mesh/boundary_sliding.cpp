@@ -12,7 +12,6 @@
 namespace polyslip::mesh {
 namespace {
 
-constexpr double worst_limit = 0.3;  // elements below are raised by themselves
 /// Powers of 1/rho, round by round: the higher, the more the least radius ratio counts.
 constexpr std::array<int, 6> worst_powers{9, 9, 9, 18, 18, 27};
 
@@ -95,6 +94,11 @@ void raise_worst(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                      return raise_worst_inside(surface, mesh, worst_limit, power);
                    });
   }
+}
+
+VolumeMesh raise_worst(const SurfaceMesh& surface, VolumeMesh mesh) {
+  for (const int power : worst_powers) mesh = raise_worst_inside(surface, mesh, worst_limit, power);
+  return mesh;
 }
 
 }  // namespace polyslip::mesh

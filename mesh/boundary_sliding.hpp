@@ -19,10 +19,16 @@ namespace polyslip::mesh {
 void slide_boundary(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                     double progression_factor, int threads);
 
-/// Six times: slides those nodes only that elements below a radius ratio of 0.3 have, by the sum of
+/// Elements of a lower radius ratio are raised by themselves.
+inline constexpr double worst_limit = 0.3;
+
+/// Six times: slides those nodes only that elements below worst_limit have, by the sum of
 /// rho^-9 and, later, rho^-18 and rho^-27, and improves these elements (raise_worst_inside);
 /// otherwise as slide_boundary.
 void raise_worst(BoundaryMesher& boundary, std::vector<VolumeMesh>& volumes,
                  double progression_factor, int threads);
+
+/// The same for one grain whose surface stays.
+VolumeMesh raise_worst(const SurfaceMesh& surface, VolumeMesh mesh);
 
 }  // namespace polyslip::mesh

@@ -12,6 +12,10 @@ constexpr double sliver = 0.1;
 /// Share of the worst triangle's radius ratio (2 r/R) that elements on it reach.
 constexpr double triangle_share = 0.7;
 constexpr double alpha = 0.2;  // eq. (5)
+constexpr double raise_gain = 0.003;
+constexpr double raise_O_share = 0.9;
+constexpr double bound_share = 0.98;
+constexpr std::size_t grains_a_try = 100;  // of which one may be tried again
 
 /// A radius ratio in steps, as far as it is below `most`.
 int steps(double worst, double most) {
@@ -46,6 +50,19 @@ bool replaces(const MeshQuality& candidate, const MeshQuality& present) {
   const int before = steps(present.worst, sliver), after = steps(candidate.worst, sliver);
   if (before != after) return after > before;
   return candidate.O > present.O && candidate.worst >= present.worst;
+}
+
+bool raises(const MeshQuality& candidate, const MeshQuality& present) {
+  return candidate.worst > present.worst + raise_gain && candidate.O >= raise_O_share * present.O;
+}
+
+std::vector<int> worst_grains(const std::vector<double>& worst, const std::vector<double>& bounds) {
+  std::vector<int> grains;
+  for (std::size_t i = 0; i < worst.size(); ++i)
+    if (worst[i] < bound_share * bounds[i]) grains.push_back(static_cast<int>(i));
+  std::stable_sort(grains.begin(), grains.end(), [&](int i, int j) { return worst[i] < worst[j]; });
+  grains.resize(std::min(grains.size(), (worst.size() + grains_a_try - 1) / grains_a_try));
+  return grains;
 }
 
 bool is_good(const SurfaceBounds& bounds, double worst, double O, double target) {

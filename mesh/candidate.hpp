@@ -2,6 +2,7 @@
 // When a grain's mesh is good enough for no further mesher to be tried.
 
 #include <utility>
+#include <vector>
 
 #include "mesh/volume_mesher.hpp"
 
@@ -32,5 +33,14 @@ struct MeshQuality {
 /// Whether a mesh is to take the place of the present one, whose nodes have slid already: if it has
 /// a better O and no worse an element, or if it mends one below 0.1 (in steps as above).
 bool replaces(const MeshQuality& candidate, const MeshQuality& present);
+
+/// The same where only the worst element counts: if that is better by more than 0.003, and O no
+/// less than nine tenths.
+bool raises(const MeshQuality& candidate, const MeshQuality& present);
+
+/// Grains for which other meshers might have a better worst element: it is below 0.98 of the bound
+/// of the grain's surface (mesh/facet_bound.hpp, no more than 0.3). The worst first, then by
+/// number; no more than one in a hundred of all grains (rounded up), so that this costs little.
+std::vector<int> worst_grains(const std::vector<double>& worst, const std::vector<double>& bounds);
 
 }  // namespace polyslip::mesh

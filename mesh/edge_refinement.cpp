@@ -1,5 +1,5 @@
-// Numbers of elements and nodes of edges beyond their own grading: progression across vertices, and
-// nodes under triangles that are flat over a 1D element.
+// Numbers of elements and nodes of edges beyond their own grading: progression across vertices,
+// elements alike at acute corners, and nodes under triangles that are flat over a 1D element.
 
 #include <algorithm>
 #include <limits>
@@ -18,6 +18,11 @@ using core::Vec3;
 constexpr double flat_height = 0.35;
 /// Rounds in which the elements at vertices are made alike.
 constexpr int balancing_rounds = 100;
+/// Cosine of the angle (10 degrees) of corners of faces whose sides are to be alike.
+constexpr double acute_cosine = 0.98481;
+/// Sides of such a corner are alike if their lengths differ by no more than this share.
+constexpr double alike = 0.02;
+constexpr int corner_rounds = 5;
 
 }  // namespace
 
@@ -31,8 +36,8 @@ void BoundaryMesher::mesh_edges() {
     if (!edge_stale_[e] || is_slave_edge(e)) continue;
     edge_copied_[e] ? copy_edge(e) : mesh_edge(e);
   }
-  for (int i = 0; i < balancing_rounds && balance_vertices(); ++i) {
-  }
+  balance_vertices();
+  for (int i = 0; i < corner_rounds && balance_corners(); ++i) balance_vertices();
   copy_slave_edges();
 }
 
@@ -54,7 +59,12 @@ std::vector<double> BoundaryMesher::least_at_vertices() const {
   return least;
 }
 
-bool BoundaryMesher::balance_vertices() {
+void BoundaryMesher::balance_vertices() {
+  for (int i = 0; i < balancing_rounds && refine_at_vertices(); ++i) {
+  }
+}
+
+bool BoundaryMesher::refine_at_vertices() {
   const auto least = least_at_vertices();
   const double p = options_.progression_factor;
   bool any = false;
@@ -73,6 +83,45 @@ bool BoundaryMesher::balance_vertices() {
     edge_stale_[e] = any = true;
   }
   return any;
+}
+
+bool BoundaryMesher::balance_corners() {
+  bool any = false;
+  for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
+    if (face_copied_[f] || is_slave_face(f)) continue;
+    const auto& face = geometry_.topology.faces[f];
+    for (std::size_t i = 0; i < face.edges.size(); ++i) {
+      const std::size_t j = (i + 1) % face.edges.size();
+      any |= make_alike({edge_masters_[face.edges[i]], face.forward[i] ? 1 : 0},
+                        {edge_masters_[face.edges[j]], face.forward[j] ? 0 : 1});
+    }
+  }
+  return any;
+}
+
+/// The longer of two end elements, if the corner between them is acute, gets the other's length.
+bool BoundaryMesher::make_alike(EdgeEnd a, EdgeEnd b) {
+  if (a.edge == b.edge || edge_copied_[a.edge] || edge_copied_[b.edge]) return false;
+  const Vec3 u = end_chord(a), v = end_chord(b);
+  if (!(u.dot(v) > acute_cosine * u.norm() * v.norm())) return false;
+  const double of_a = end_elements(a.edge)[a.end], of_b = end_elements(b.edge)[b.end];
+  if (std::max(of_a, of_b) <= (1 + alike) * std::min(of_a, of_b)) return false;
+  const auto [edge, end] = of_a > of_b ? a : b;
+  const double length = std::min(of_a, of_b);
+  const auto& arcs = edges_[edge].arcs;
+  auto cut = with_node_at(arcs, end == 0 ? length : arcs.back() - length, grading(edge));
+  if (cut.size() > arcs.size() + 1) return false;
+  place_edge(edge, cut);
+  cut_arcs_[edge] = std::move(cut);
+  edge_stale_[edge] = true;
+  return true;
+}
+
+/// From a vertex to the next node, in the scaled frame.
+Vec3 BoundaryMesher::end_chord(EdgeEnd end) const {
+  const auto& x = edges_[end.edge].nodes;
+  const Vec3 chord = end.end == 0 ? x[1] - x[0] : x[x.size() - 2] - x.back();
+  return chord.cwiseProduct(scale_);
 }
 
 double BoundaryMesher::largest_progression() const {
@@ -99,10 +148,13 @@ std::vector<std::array<int, 2>> BoundaryMesher::loop_elements(int face) const {
   return elements;
 }
 
+EdgeGrading BoundaryMesher::grading(int edge) const {
+  return {end_sizes_[edge][0], end_sizes_[edge][1], sizes_.edges[edge],
+          options_.progression_factor};
+}
+
 void BoundaryMesher::cut_edge(int edge, double arc) {
-  cut_arcs_[edge] = with_node_at(
-      edges_[edge].arcs, arc,
-      {end_sizes_[edge][0], end_sizes_[edge][1], sizes_.edges[edge], options_.progression_factor});
+  cut_arcs_[edge] = with_node_at(edges_[edge].arcs, arc, grading(edge));
   edge_stale_[edge] = true;
 }
 

@@ -33,9 +33,12 @@ Mesh mesh_geometry(const Geometry& geometry, const MeshingOptions& options, cons
   const auto& all = options.meshers;
   TurnsOfMeshers turns;
   // In a remeshing the worst element counts for more than O (docs/theory-polycrystal.md, (P.31)).
-  if (!geometry.from_mesh && options.slide_boundary && options.mesher_target < 1 && all.size() > 1)
+  if (!geometry.from_mesh && options.slide_boundary && options.mesher_target < 1 &&
+      all.size() > 1) {
     turns = {by({all.front()}, false), by({all.begin() + 1, all.end()}),
              has_own_optimiser(all.front())};
+    for (const auto& mesher : all) turns.each.push_back(by({mesher}));
+  }
   const FaceMeshers face_meshers = [&](const std::vector<FaceRequest>& requests,
                                        const std::string& mesher) {
     return pool.mesh_faces(requests, mesher, pool_options(options, {mesher}));

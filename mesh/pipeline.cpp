@@ -13,6 +13,7 @@
 #include "mesh/candidate.hpp"
 #include "mesh/curved_elements.hpp"
 #include "mesh/deformed_regularisation.hpp"
+#include "mesh/facet_bound.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/tetrahedral_optimiser.hpp"
 #include "mesh/volume_correction.hpp"
@@ -62,6 +63,7 @@ class Pipeline {
     mesh_until_all_are();
     if (options_.slide_boundary) slide();
     if (options_.slide_boundary) raise_worst_elements();
+    if (options_.slide_boundary) mesh_worst_grains();
     if (options_.slide_boundary && turns_.first) mesh_poor_grains();
     tell("assembling", 0);
     const auto measure = report_.times.measure("assembly");
@@ -185,6 +187,45 @@ class Pipeline {
           replaces({min_radius_ratio(result.mesh), result.O}, {min_radius_ratio(now.mesh), now.O}))
         now = std::move(result);
     });
+  }
+
+  /// The meshers, one by one, try the grains with the worst elements where nodes are now, as long
+  /// as their surfaces allow better ones (mesh/candidate.hpp).
+  void mesh_worst_grains() {
+    if (turns_.each.empty()) return;
+    const auto measure = report_.times.measure("meshing");
+    const auto numbers = boundary_.numbers();
+    const auto positions = boundary_.positions(numbers);
+    std::vector<double> worst(results_.size()), bounds(results_.size(), 0.0);
+    core::parallel_for(threads_, results_.size(), [&](std::size_t i) {
+      worst[i] = min_radius_ratio(results_[i].mesh);
+      if (worst[i] < worst_limit)
+        bounds[i] =
+            surface_bound(request(static_cast<int>(i), numbers, positions).surface, worst_limit);
+    });
+    for (const auto& mesher : turns_.each) {
+      const auto grains = worst_grains(worst, bounds);
+      std::vector<GrainResult> candidates(grains.size());
+      mesher(
+          grains.size(), [&](std::size_t i) { return request(grains[i], numbers, positions); },
+          [&](std::size_t i, GrainResult&& result) { candidates[i] = std::move(result); });
+      core::parallel_for(threads_, grains.size(), [&](std::size_t i) {
+        GrainResult& candidate = candidates[i];
+        if (!candidate.ok) return;
+        const auto grain = request(grains[i], numbers, positions);
+        candidate.mesh = raise_worst(grain.surface, std::move(candidate.mesh));
+        candidate.O = mesh_quality_O(candidate.mesh, grain.element_size);
+      });
+      for (std::size_t i = 0; i < grains.size(); ++i) {
+        GrainResult& now = results_[grains[i]];
+        add_faults(candidates[i]);
+        const double reached = min_radius_ratio(candidates[i].mesh);
+        if (!candidates[i].ok || !raises({reached, candidates[i].O}, {worst[grains[i]], now.O}))
+          continue;
+        worst[grains[i]] = reached;
+        now = std::move(candidates[i]);
+      }
+    }
   }
 
   /// A mesher that tries a grain again may fail again.

@@ -2,6 +2,7 @@
 // The meshing pipeline with the meshers of grains as a parameter.
 
 #include <functional>
+#include <vector>
 
 #include "mesh/geometry.hpp"
 
@@ -18,6 +19,8 @@ struct TurnsOfMeshers {
   /// Whether meshes by the first still lack our optimiser: what nodes slide by has passed it, and
   /// what has not is the other candidate once they have.
   bool unoptimised = false;
+  /// All meshers, one by one, for the grains with the worst elements.
+  std::vector<GrainMeshers> each{};
 };
 
 /// As mesh_geometry (mesh/geometry.hpp), by `meshers`; with `turns`, these make the grains' first

@@ -11,6 +11,7 @@
 #include "mesh/assembly.hpp"
 #include "mesh/boundary_mesh.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/pipeline.hpp"
 #include "mesh/star_mesh.hpp"
 
 namespace polyslip::mesh {
@@ -221,6 +222,72 @@ TEST_F(BoundarySliding, TakesTheBetterOfTwoOrdersOfOptimising) {
   mesh_geometry(geometry, options, Vec3::Ones(), *pool_, plain);
   EXPECT_GT(all.mean_O, std::max(hxt.mean_O, plain.mean_O));
   EXPECT_GE(all.wins[0], 55);
+}
+
+/// Each mesher tries the grain, one of twenty, with the worst element once more, as long as its
+/// surface allows a better one.
+TEST_F(BoundarySliding, LetsOtherMeshersHaveTheWorstGrains) {
+  const auto by = [&](const std::string& mesher, std::vector<std::size_t>* counts) -> GrainMeshers {
+    PoolOptions options;
+    options.meshers = {mesher};
+    return [this, options, counts](std::size_t count, const RequestSource& source,
+                                   const ResultSink& sink) {
+      if (counts) counts->push_back(count);
+      pool_->mesh(count, source, sink, options);
+    };
+  };
+  for (const std::uint64_t seed : {5, 9}) {
+    const auto geometry = geometry_of(polycrystal(20, seed));
+    MeshingReport report;
+    const auto first = by("paper-1", nullptr);
+    TurnsOfMeshers turns{first, {}};
+    const auto worst = [&] {
+      const Mesh m = mesh_geometry(geometry, {}, Vec3::Ones(), first, report, {}, turns);
+      check(m);
+      return quality(m).min_radius_ratio;
+    };
+    const double before = worst();
+    std::vector<std::size_t> counts;
+    for (const char* mesher : {"gmsh-hxt", "gmsh-delaunay"})
+      turns.each.push_back(by(mesher, &counts));
+    const double after = worst();
+    const std::size_t asked = seed == 9 ? 1 : 0;  // in 5 all are at what their surfaces allow
+    EXPECT_EQ(counts, (std::vector<std::size_t>{asked, asked}));
+    if (asked == 0)
+      EXPECT_EQ(after, before);
+    else
+      EXPECT_GT(after, before + 0.003);
+  }
+}
+
+/// Of end elements on both sides of corners of faces below `limit` [rad]: longer by shorter.
+std::vector<double> ratios_at_corners(const BoundaryMesher& boundary, double limit) {
+  std::vector<double> ratios;
+  for (const auto& face : boundary.geometry().topology.faces)
+    for (std::size_t i = 0; i < face.edges.size(); ++i) {
+      const std::size_t j = (i + 1) % face.edges.size();
+      // From the corner to the next node on each side.
+      auto before = boundary.edges()[face.edges[i]].nodes;
+      auto after = boundary.edges()[face.edges[j]].nodes;
+      if (face.forward[i]) std::reverse(before.begin(), before.end());
+      if (!face.forward[j]) std::reverse(after.begin(), after.end());
+      const Vec3 a = before[1] - before[0], b = after[1] - after[0];
+      if (std::atan2(a.cross(b).norm(), a.dot(b)) < limit)
+        ratios.push_back(std::max(a.norm() / b.norm(), b.norm() / a.norm()));
+    }
+  return ratios;
+}
+
+TEST_F(BoundarySliding, BeginsWithElementsAlikeAtAcuteCorners) {
+  const auto geometry = geometry_of(polycrystal(500, 1));
+  MeshingOptions options;
+  options.element_size = 0.25;
+  BoundaryMesher boundary(geometry, options, Vec3::Ones());
+  boundary.update();
+  auto ratios = ratios_at_corners(boundary, 9.9 * M_PI / 180);
+  std::sort(ratios.begin(), ratios.end());
+  ASSERT_GT(ratios.size(), 15u);
+  EXPECT_LT(ratios.back(), 1.02 + 1e-9);
 }
 
 TEST_F(BoundarySliding, IsTheSameForAnyNumberOfThreads) {

@@ -240,6 +240,25 @@ TEST(Candidates, AreGoodIfTheyReachWhatTheirSurfaceAllows) {
   EXPECT_GT(surface_bounds(needle, 0.5).floor, 0.01);
 }
 
+TEST(Candidates, RaiseAPresentMeshForABetterWorstElement) {
+  const MeshQuality present{0.25, 0.95};
+  EXPECT_TRUE(raises({0.26, 0.9}, present));
+  EXPECT_FALSE(raises({0.252, 0.99}, present)) << "too little";
+  EXPECT_FALSE(raises({0.29, 0.85}, present)) << "too little O";
+  EXPECT_FALSE(raises({std::nan(""), 0.95}, present));
+}
+
+TEST(Candidates, OneGrainInAHundredMayBeRaised) {
+  std::vector<double> worst(150, 0.4), bounds(150, 0.0);
+  EXPECT_TRUE(worst_grains(worst, bounds).empty());
+  for (const int grain : {7, 20, 90}) bounds[grain] = 0.3;
+  worst[7] = 0.28, worst[20] = 0.27, worst[90] = 0.25;
+  EXPECT_EQ(worst_grains(worst, bounds), (std::vector<int>{90, 20}));
+  worst[90] = 0.295;
+  EXPECT_EQ(worst_grains(worst, bounds), (std::vector<int>{20, 7})) << "90 is at its bound";
+  EXPECT_EQ(worst_grains({0.2}, {0.3}), std::vector<int>{0});
+}
+
 TEST(Candidates, ReplaceAPresentMeshForABetterOOrASliver) {
   const MeshQuality present{0.17, 0.93};
   EXPECT_TRUE(replaces({0.17, 0.94}, present));
