@@ -193,7 +193,7 @@ void RunJob::stop(const std::string& reason) {
 void RunJob::start() {
   build_model(begin());
   if (model_->strain() == 0 && progress_.states == 0) {
-    measure_new_mesh();
+    measure_new_mesh(core::Vec3::Ones());
     store();
   }
   last_step_ = core::wall_seconds();

@@ -78,8 +78,11 @@ class RunJob {
   void write_checkpoint();
 
   // run_remeshing.cpp
-  /// Notes what the mesh is like as it left the mesher.
-  void measure_new_mesh();
+  /// Notes what the mesh is like as it left the mesher, made in the frame of sizes scaled by
+  /// `scale` (rank 0's counts).
+  void measure_new_mesh(const core::Vec3& scale);
+  /// Of the body; the same on every rank.
+  core::Mat3 isotropy_frame(const solver::MeshPart& part) const;
   /// Of the present mesh; the same on every rank.
   remap::Wear wear() const;
   /// Why the elements are worn; empty if they are not.

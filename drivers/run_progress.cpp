@@ -50,6 +50,7 @@ std::string RunProgress::text() const {
          {"slope", slope},
          {"due", {due.trigger, due.reason}},
          {"fresh", {fresh.worst_radius_ratio, fresh.poor_share, fresh.worst_jacobian}},
+         {"sizes", std::vector<double>(sizes.data(), sizes.data() + sizes.size())},
          {"watch_from", watch_from},
          {"last_stored", last_stored},
          {"last_attempt", last_attempt},
@@ -93,6 +94,8 @@ RunProgress RunProgress::from_text(const std::string& text) {
     j.at("fresh").at(0).get_to(p.fresh.worst_radius_ratio);
     j.at("fresh").at(1).get_to(p.fresh.poor_share);
     j.at("fresh").at(2).get_to(p.fresh.worst_jacobian);
+    if (j.contains("sizes"))  // checkpoints before it took the frame scaled back to isotropy
+      p.sizes = core::Mat3(j.at("sizes").get<std::array<double, 9>>().data());
     j.at("watch_from").get_to(p.watch_from);
     j.at("last_stored").get_to(p.last_stored);
     j.at("last_attempt").get_to(p.last_attempt);

@@ -37,7 +37,9 @@ struct RunProgress {
   std::vector<results::RemeshingSummary> remeshings;
   std::vector<results::FailedRemeshing> failed_remeshings;
   DueRemeshing due;
-  remap::Wear fresh;        ///< of the present mesh when it left the mesher (no inversion_strain)
+  remap::Wear fresh;  ///< of the present mesh when it left the mesher (no inversion_strain)
+  /// Times the isotropy frame: the frame of sizes of the present mesh (remap::size_frame).
+  core::Mat3 sizes = core::Mat3::Identity();
   double watch_from = 0;    ///< strain from which on worn elements are looked for
   double last_stored = -1;  ///< strain of the last stored state
   double last_attempt = 0;  ///< strain of the last remeshing, failed ones too

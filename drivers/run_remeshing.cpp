@@ -1,5 +1,6 @@
 // When a run remeshes, and what it does if that fails.
 
+#include <array>
 #include <span>
 #include <utility>
 
@@ -28,24 +29,28 @@ constexpr double first_step_share = 0.25;
 
 }  // namespace
 
-/// Each rank measures its own elements.
-remap::Wear RunJob::wear() const {
-  const solver::MeshPart part = model_->part();
+core::Mat3 RunJob::isotropy_frame(const solver::MeshPart& part) const {
   const auto owned = [&](const std::vector<core::Vec3>& values) {
     return std::span(values).first(part.owned_nodes);
   };
-  const core::Mat3 frame =
-      remap::size_scale(
-          solver::all_gather(comm_, remap::part_boxes(owned(part.initial), owned(part.positions))),
-          options_.remeshing.shares())
-          .asDiagonal();
+  return remap::isotropy_frame(
+      solver::all_gather(comm_, remap::frame_moments(owned(part.initial), owned(part.positions))));
+}
+
+/// Each rank measures its own elements.
+remap::Wear RunJob::wear() const {
+  const solver::MeshPart part = model_->part();
+  const core::Mat3 frame = progress_.sizes * isotropy_frame(part);
   const int threads = solver::size_of(comm_) > 1 ? 1 : core::thread_count(request_.jobs);
   return remap::whole_wear(
       solver::all_gather(comm_, remap::measure_part(part.elements, part.positions, part.rates,
                                                     frame, options_.remeshing.wear, threads)));
 }
 
-void RunJob::measure_new_mesh() {
+void RunJob::measure_new_mesh(const core::Vec3& scale) {
+  const std::array<double, 3> on_root =
+      solver::all_gather(comm_, std::array<double, 3>{scale[0], scale[1], scale[2]}).front();
+  progress_.sizes = remap::size_frame(core::Vec3(on_root.data()), isotropy_frame(model_->part()));
   progress_.fresh = wear();
   progress_.fresh.inversion_strain = 0;
 }
@@ -90,9 +95,11 @@ void RunJob::try_remeshing(const RemeshingAttempt& attempt, int number, const me
   std::string beyond = report.beyond_limits;
   broadcast(comm_, beyond);
   if (!beyond.empty()) throw AuditFailure(beyond);
+  const core::Vec3 scale =
+      root() ? remap::meshing_scale(fresh.mesh, attempt.remeshing) : core::Vec3(core::Vec3::Ones());
   build_model(std::move(fresh));
   if (attempt.remeshing.transport.stress == "carried") model_->relax();
-  measure_new_mesh();
+  measure_new_mesh(scale);
   const mesh::Snapshot start = model_->snapshot();
   const solver::StepRecord first = take_step(cuts_before_a_new_mesh);
   log_.info(remeshing_text(report));

@@ -96,8 +96,8 @@ void set_volume(GrainStatistics& grain, double volume) {
   grain.volume = volume;
 }
 
-/// Least radius ratio in the frame of sizes: where these follow the body's shape even perfect
-/// elements are flat in space.
+/// Least radius ratio in the frame of sizes of a mesh made now: where these follow the body's shape
+/// even perfect elements are flat in space.
 double worst_radius_ratio(const mesh::Snapshot& s, const RemeshingOptions& options, int threads) {
   const core::Mat3 frame = meshing_scale(s.mesh, options).asDiagonal();
   return measure_wear(s.mesh.tetrahedra, s.mesh.nodes, {}, frame, {}, threads).worst_radius_ratio;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/parallel.hpp"
 #include "remap/audit.hpp"
 
@@ -25,7 +27,12 @@ void log_opened(double strain, const char* of, const mesh::DeformedRegularisatio
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options) {
   Eigen::AlignedBox3d box;
   for (const core::Vec3& x : mesh.nodes) box.extend(x);
-  return size_scale(mesh.size, box.sizes(), options.shares());
+  const core::Vec3 stretch = mesh.size.cwiseQuotient(box.sizes());
+  core::Vec3 scale;
+  for (int a = 0; a < 3; ++a)
+    scale[a] = std::pow(stretch[a],
+                        stretch[a] > 1 ? options.orthotropic_share : options.lengthening_share);
+  return scale;
 }
 
 mesh::Geometry regularised_geometry(const mesh::Mesh& old, const RemeshingOptions& remeshing,

@@ -10,7 +10,6 @@
 #include "mesh/snapshot.hpp"
 #include "mesh/volume_mesher.hpp"
 #include "remap/grain_statistics.hpp"
-#include "remap/size_frame.hpp"
 #include "remap/transport.hpp"
 #include "remap/wear.hpp"
 
@@ -29,7 +28,6 @@ struct RemeshingOptions {
   /// Share of the lengthening that element sizes follow: 0 keeps their size along a direction in
   /// which the polycrystal was drawn out (the paper), 1 the number of elements.
   double lengthening_share = 0.5;
-  SizeShares shares() const { return {orthotropic_share, lengthening_share}; }
   TransportOptions transport{"corrected", "zero"};  ///< docs/remeshing-accuracy.md says why
   // Limits of a remeshing; beyond them the run stops and names the grain.
   double max_grain_volume_change = 0.005;  ///< relative
@@ -69,8 +67,9 @@ mesh::Snapshot remesh(const mesh::Snapshot& old, const mesh::MeshingOptions& mes
                       const RemeshingOptions& options, mesh::MesherPool& pool, RemeshReport& report,
                       const std::function<void(const std::string&)>& log);
 
-/// The frame in which sizes are taken (size_scale), of the polycrystal's extent and its size at
-/// zero strain.
+/// The frame in which sizes are taken: along each axis (size / extent)^share, of the polycrystal's
+/// extent and its size at zero strain, with the one share where it has become shorter and the other
+/// where it has become longer.
 core::Vec3 meshing_scale(const mesh::Mesh& mesh, const RemeshingOptions& options);
 
 /// The shapes of a worn mesh after the regularisation of what closes, in the frame of sizes; its

@@ -108,6 +108,15 @@ class ElementGauge {
 
 }  // namespace
 
+std::vector<Vec3> initial_positions(const mesh::Snapshot& snapshot) {
+  std::vector<Vec3> initial = snapshot.mesh.nodes;
+  const mesh::Field* u = snapshot.find("displacement", mesh::Location::node);
+  if (!u) return initial;
+  for (std::size_t n = 0; n < initial.size(); ++n)
+    initial[n] -= Vec3(u->values[3 * n], u->values[3 * n + 1], u->values[3 * n + 2]);
+  return initial;
+}
+
 PartWear measure_part(std::span<const std::array<int, 10>> tetrahedra,
                       std::span<const Vec3> positions, std::span<const Vec3> rates,
                       const Mat3& frame, const WearOptions& options, int threads) {

@@ -12,14 +12,14 @@
 
 #include "core/types.hpp"
 #include "mesh/snapshot.hpp"
+#include "remap/isotropy_frame.hpp"
 
 namespace polyslip::remap {
 
-/// Measures of a mesh. The radius ratios are taken in a frame, that of sizes
-/// (remap/size_frame.hpp): what homogeneous deformation flattens elements by there, a new mesh
-/// would undo, and no more. The others are blind to it.
+/// Measures of a mesh, each blind to its homogeneous deformation since it was made, which flattens
+/// every element alike, and to the flatness that it was given (size_frame).
 struct Wear {
-  /// Least 3 r_in / R_circ of the corners' tetrahedra, in the frame.
+  /// Least 3 r_in / R_circ of the corners' tetrahedra, in the frame of sizes.
   double worst_radius_ratio = 1;
   /// Share of elements whose radius ratio there is below WearOptions::poor_radius_ratio.
   double poor_share = 0;
@@ -50,6 +50,9 @@ struct PartWear {
 /// Of all parts together; what is not a number in one is none in the whole. Without elements
 /// nothing is worn.
 Wear whole_wear(std::span<const PartWear> parts);
+
+/// Positions at zero strain of a snapshot's nodes: current ones less the displacement.
+std::vector<core::Vec3> initial_positions(const mesh::Snapshot& snapshot);
 
 /// Of ten-node elements with nodes at `positions`; `rates`: change of the positions per unit
 /// strain, but for a homogeneous motion (which changes no ratio of det J), or empty if it is not

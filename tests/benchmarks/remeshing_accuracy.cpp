@@ -113,7 +113,7 @@ std::string first_inversion(const Run& run) {
   double last = 0;
   for (const auto& state : run.states.states()) {
     const auto s = results::read_state(run.states.path(state));
-    const core::Mat3 frame = remap::meshing_scale(s.mesh, {}).asDiagonal();
+    const auto frame = remap::isotropy_frame(remap::initial_positions(s), s.mesh.nodes);
     if (remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, {}, frame, {}, 2).worst_jacobian <= 0)
       return fmt::format("first between {:g} and {:g}", last, state.strain);
     last = state.strain;

@@ -1,5 +1,5 @@
 // How the elements of a run wear: `wear_history RUN_FOLDER`, one line a stored state; in the frame
-// of sizes of a deck that leaves its shares as they are.
+// of sizes of a deck that leaves the shares as they are.
 
 #include <fmt/format.h>
 
@@ -24,12 +24,21 @@ std::vector<core::Vec3> rates_of(const mesh::Snapshot& snapshot) {
   return rates;
 }
 
-void print(const mesh::Snapshot& s) {
+/// Of the mesh of a state, what its frame of sizes is made of (remap/isotropy_frame.hpp).
+struct Sizes {
+  int mesh_number = -1;
+  core::Mat3 frame = core::Mat3::Identity();
+};
+
+void print(const mesh::Snapshot& s, Sizes& sizes) {
   remap::WearOptions options;
   options.inversion_strain = 0.2;
-  const core::Mat3 frame = remap::meshing_scale(s.mesh, {}).asDiagonal();
+  const core::Mat3 isotropy = remap::isotropy_frame(remap::initial_positions(s), s.mesh.nodes);
+  if (s.mesh_number != sizes.mesh_number)  // its first state is that as the mesher left it
+    sizes = {s.mesh_number, remap::size_frame(remap::meshing_scale(s.mesh, {}), isotropy)};
   const auto rates = rates_of(s);
-  const auto wear = remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, rates, frame, options, 1);
+  const auto wear = remap::measure_wear(s.mesh.tetrahedra, s.mesh.nodes, rates,
+                                        sizes.frame * isotropy, options, 1);
   fmt::print("{:8.4f} {:5d} {:9d} {:8.4f} {:8.4f} {:8.3f} {:9.4f}\n", s.strain, s.mesh_number,
              s.mesh.element_count(), wear.worst_radius_ratio, wear.worst_jacobian,
              100 * wear.poor_share, wear.inversion_strain);
@@ -45,7 +54,8 @@ int main(int argc, char** argv) {
   try {
     const results::StateSeries series(argv[1]);
     fmt::print("  strain  mesh  elements  radius  jacobian  poor, %  inversion\n");
-    for (const auto& state : series.states()) print(results::read_state(series.path(state)));
+    Sizes sizes;
+    for (const auto& state : series.states()) print(results::read_state(series.path(state)), sizes);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -74,6 +74,7 @@ TEST(RunProgress, ComesBackFromItsText) {
   p.failed_remeshings.push_back({0.4, "grain 3"});
   p.due = {failed_step, "no step"};
   p.fresh = {0.2, 0.01, 0.7, 0};
+  p.sizes << 1.0 / 3, 0, 0.1, 0, 1, 0, 0, -0.2, 3;
   p.watch_from = 0.55;
   p.last_attempt = 0.5;
   p.last_stored = 0.48;
@@ -97,6 +98,7 @@ TEST(RunProgress, ComesBackFromItsText) {
   EXPECT_EQ(q.failed_remeshings[0].reason, "grain 3");
   EXPECT_EQ(q.due.reason, "no step");
   EXPECT_EQ(q.fresh.worst_jacobian, 0.7);
+  EXPECT_EQ(q.sizes, p.sizes);
   EXPECT_EQ(q.watch_from, 0.55);
   EXPECT_FALSE(q.remeshings[1].strain_to_reload);
 }

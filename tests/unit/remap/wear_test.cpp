@@ -31,8 +31,53 @@ Mat3 gradient() {
 }
 
 Wear measure(const mesh::Mesh& mesh, const std::vector<Vec3>& now,
-             const std::vector<Vec3>& rates = {}, const Mat3& frame = Mat3::Identity()) {
-  return measure_wear(mesh.tetrahedra, now, rates, frame, {}, 2);
+             const std::vector<Vec3>& rates = {}) {
+  return measure_wear(mesh.tetrahedra, now, rates, isotropy_frame(mesh.nodes, now), {}, 2);
+}
+
+TEST(IsotropyFrame, UndoesAHomogeneousMotion) {
+  const mesh::Mesh mesh = box();
+  const auto now = moved(mesh.nodes, gradient(), {3, -1, 2});
+  EXPECT_LT((isotropy_frame(mesh.nodes, now) * gradient() - Mat3::Identity()).norm(), 1e-12);
+}
+
+TEST(IsotropyFrame, NeedsABody) {
+  const std::vector<Vec3> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  EXPECT_THROW(isotropy_frame(flat, flat), core::InternalError);
+  EXPECT_THROW(isotropy_frame({}, {}), core::InternalError);
+}
+
+/// The motion is not homogeneous, so that the fit weighs all nodes; one part is empty, as that of a
+/// rank without nodes.
+TEST(IsotropyFrame, OfPartsIsThatOfTheWhole) {
+  const mesh::Mesh mesh = box();
+  auto now = moved(mesh.nodes, gradient(), {300, -100, 200});
+  for (Vec3& x : now) x += 0.1 * Vec3(std::sin(3 * x.y()), std::cos(2 * x.z()), std::sin(x.x()));
+  const std::span<const Vec3> from(mesh.nodes), to(now);
+  const std::size_t cut = from.size() / 3;
+  const std::vector<FrameMoments> parts{frame_moments(from.first(cut), to.first(cut)),
+                                        frame_moments({}, {}),
+                                        frame_moments(from.subspan(cut), to.subspan(cut))};
+  EXPECT_LT((isotropy_frame(parts) - isotropy_frame(mesh.nodes, now)).norm(), 1e-12);
+}
+
+/// A mesh made at some strain in the frame scaled by `scale` has its radius ratios there, and keeps
+/// them in whatever homogeneous motion follows, shear too.
+TEST(SizeFrame, IsThatOfTheMeshFromWhereItWasMade) {
+  const mesh::Mesh mesh = box();
+  Mat3 before;
+  before << 2, 0, 0.3, 0, 1, 0, 0, 0, 0.5;
+  const auto made = moved(mesh.nodes, before, Vec3::Zero());
+  const auto now = moved(made, gradient(), {3, -1, 2});
+  const Vec3 scale(0.7, 1, 2);
+  const Mat3 sizes = size_frame(scale, isotropy_frame(mesh.nodes, made));
+  const auto worst = [&](const std::vector<Vec3>& x, const Mat3& frame) {
+    return measure_wear(mesh.tetrahedra, x, {}, frame, {}, 1).worst_radius_ratio;
+  };
+  const double expected = worst(made, scale.asDiagonal());
+  EXPECT_LT((sizes * isotropy_frame(mesh.nodes, made) - Mat3(scale.asDiagonal())).norm(), 1e-12);
+  EXPECT_NEAR(worst(now, sizes * isotropy_frame(mesh.nodes, now)), expected, 1e-10);
+  EXPECT_GT(std::abs(worst(now, isotropy_frame(mesh.nodes, now)) - expected), 0.01);
 }
 
 TEST(Wear, OfPartsIsThatOfTheWhole) {
@@ -66,14 +111,13 @@ TEST(Wear, APartThatIsNotANumberShowsInTheWhole) {
   EXPECT_TRUE(std::isnan(whole_wear(std::vector<PartWear>{{}, bad, {}}).worst_jacobian));
 }
 
-TEST(Wear, DoesNotSeeWhatTheFrameUndoes) {
+TEST(Wear, DoesNotSeeAHomogeneousMotion) {
   const mesh::Mesh mesh = box();
   const Wear at_rest = measure(mesh, mesh.nodes);
   EXPECT_NEAR(at_rest.worst_radius_ratio, mesh::quality(mesh).min_radius_ratio, 1e-12);
   EXPECT_NEAR(at_rest.worst_jacobian, 1, 1e-12);  // straight elements
   EXPECT_EQ(at_rest.poor_share, 0);
-  const Wear after =
-      measure(mesh, moved(mesh.nodes, gradient(), {3, -1, 2}), {}, gradient().inverse());
+  const Wear after = measure(mesh, moved(mesh.nodes, gradient(), {3, -1, 2}));
   EXPECT_NEAR(after.worst_radius_ratio, at_rest.worst_radius_ratio, 1e-10);
   EXPECT_NEAR(after.worst_jacobian, 1, 1e-10);
   EXPECT_FALSE(worn(at_rest, after, {}));
