@@ -3,9 +3,53 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <concepts>
+#include <tuple>
 
 namespace polyslip::mesh::protocol {
 namespace {
+
+// What messages hold, in their order: written and read by the same list.
+template <class T, class Type>
+concept Is = std::same_as<std::remove_const_t<T>, Type>;
+template <Is<SurfaceMesh> T>
+auto fields(T& surface) {
+  return std::tie(surface.nodes, surface.triangles);
+}
+template <Is<GrainRequest> T>
+auto fields(T& request) {
+  return std::tie(request.grain, request.element_size, request.surface);
+}
+template <Is<Batch> T>
+auto fields(T& batch) {
+  return std::tie(batch.mesher, batch.element_size, batch.timeout, batch.optimise, batch.grains);
+}
+template <Is<VolumeMesh> T>
+auto fields(T& mesh) {
+  return std::tie(mesh.nodes, mesh.tetrahedra);
+}
+template <Is<PlanarProblem> T>
+auto fields(T& problem) {
+  return std::tie(problem.element_size, problem.progression_factor, problem.boundary, problem.sizes,
+                  problem.forbidden_edges);
+}
+template <Is<FaceRequest> T>
+auto fields(T& request) {
+  return std::tie(request.face, request.problem);
+}
+template <Is<FaceBatch> T>
+auto fields(T& batch) {
+  return std::tie(batch.mesher, batch.timeout, batch.faces);
+}
+template <Is<PlanarMesh> T>
+auto fields(T& mesh) {
+  return std::tie(mesh.points, mesh.triangles);
+}
+
+template <class T>
+concept HasFields = requires(T& value) {
+  fields(value);
+};
 
 class Writer {
  public:
@@ -16,26 +60,21 @@ class Writer {
   }
   template <class T>
   void put(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    put_raw(&value, sizeof(T));
-  }
-  void put(const std::string& text) {
-    put<std::uint64_t>(text.size());
-    put_raw(text.data(), text.size());
+    if constexpr (HasFields<const T>) {
+      std::apply([this](const auto&... parts) { (put(parts), ...); }, fields(value));
+    } else {
+      static_assert(std::is_trivially_copyable_v<T>);
+      put_raw(&value, sizeof(T));
+    }
   }
   template <int N>
-  void put(const std::vector<Eigen::Matrix<double, N, 1>>& points) {
-    put<std::uint64_t>(points.size());
-    for (const auto& p : points) put_raw(p.data(), N * sizeof(double));
+  void put(const Eigen::Matrix<double, N, 1>& point) {
+    put_raw(point.data(), N * sizeof(double));
   }
-  void put(const std::vector<double>& values) {
-    put<std::uint64_t>(values.size());
-    put_raw(values.data(), values.size() * sizeof(double));
-  }
-  template <std::size_t N>
-  void put(const std::vector<std::array<int, N>>& rows) {
-    put<std::uint64_t>(rows.size());
-    if (!rows.empty()) put_raw(rows.data(), rows.size() * sizeof(rows[0]));
+  void put(const std::string& text) { put_list(text); }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put_list(values);
   }
   Bytes finish() {
     header_.length = bytes_.size() - sizeof(Header);
@@ -44,6 +83,14 @@ class Writer {
   }
 
  private:
+  template <class List>
+  void put_list(const List& values) {
+    put<std::uint64_t>(values.size());
+    if constexpr (std::is_trivially_copyable_v<typename List::value_type>)
+      put_raw(values.data(), values.size() * sizeof(typename List::value_type));
+    else
+      for (const auto& value : values) put(value);
+  }
   void put_raw(const void* data, std::size_t size) {
     if (size == 0) return;
     const char* begin = static_cast<const char*>(data);
@@ -53,50 +100,51 @@ class Writer {
   Bytes bytes_;
 };
 
+constexpr const char* too_few = "too few bytes";
+
 class Reader {
  public:
   explicit Reader(const Bytes& bytes) : bytes_(bytes) {}
   template <class T>
-  T get() {
-    static_assert(std::is_trivially_copyable_v<T>);
-    T value;
-    get_raw(&value, sizeof(T));
-    return value;
-  }
-  std::string get_string() {
-    std::string text(get_count(1), '\0');
-    get_raw(text.data(), text.size());
-    return text;
+  void get(T& value) {
+    if constexpr (HasFields<T>) {
+      std::apply([this](auto&... parts) { (get(parts), ...); }, fields(value));
+    } else {
+      static_assert(std::is_trivially_copyable_v<T>);
+      get_raw(&value, sizeof(T));
+    }
   }
   template <int N>
-  std::vector<Eigen::Matrix<double, N, 1>> get_points() {
-    std::vector<Eigen::Matrix<double, N, 1>> points(get_count(N * sizeof(double)));
-    for (auto& p : points) get_raw(p.data(), N * sizeof(double));
-    return points;
+  void get(Eigen::Matrix<double, N, 1>& point) {
+    get_raw(point.data(), N * sizeof(double));
   }
-  std::vector<double> get_values() {
-    std::vector<double> values(get_count(sizeof(double)));
-    get_raw(values.data(), values.size() * sizeof(double));
-    return values;
-  }
-  template <std::size_t N>
-  std::vector<std::array<int, N>> get_rows() {
-    std::vector<std::array<int, N>> rows(get_count(N * sizeof(int)));
-    if (!rows.empty()) get_raw(rows.data(), rows.size() * sizeof(rows[0]));
-    return rows;
+  void get(std::string& text) { get_list(text); }
+  template <class T>
+  void get(std::vector<T>& values) {
+    get_list(values);
   }
   void finish() const {
     if (position_ != bytes_.size()) throw ProtocolError("more bytes than announced");
   }
 
  private:
-  std::size_t get_count(std::size_t item_size) {
-    const auto count = get<std::uint64_t>();
-    if (count > (bytes_.size() - position_) / item_size) throw ProtocolError("too few bytes");
-    return count;
+  template <class List>
+  void get_list(List& values) {
+    using Value = typename List::value_type;
+    std::uint64_t count = 0;
+    get(count);
+    if constexpr (std::is_trivially_copyable_v<Value>) {
+      if (count > (bytes_.size() - position_) / sizeof(Value)) throw ProtocolError(too_few);
+      values.resize(count);
+      get_raw(values.data(), count * sizeof(Value));
+    } else {
+      // One by one: a wrong count is found out before there is no room for so many.
+      values.clear();
+      for (std::uint64_t i = 0; i < count; ++i) get(values.emplace_back());
+    }
   }
   void get_raw(void* data, std::size_t size) {
-    if (size > bytes_.size() - position_) throw ProtocolError("too few bytes");
+    if (size > bytes_.size() - position_) throw ProtocolError(too_few);
     if (size > 0) std::memcpy(data, bytes_.data() + position_, size);
     position_ += size;
   }
@@ -104,60 +152,40 @@ class Reader {
   std::size_t position_ = 0;
 };
 
+template <class T>
+Bytes message(Kind kind, std::uint64_t index, const T& value) {
+  Writer w(kind, index);
+  w.put(value);
+  return w.finish();
+}
+
+template <class T>
+T decode(const Bytes& payload) {
+  Reader r(payload);
+  T value;
+  r.get(value);
+  r.finish();
+  return value;
+}
+
 }  // namespace
 
-Bytes encode(const Batch& batch) {
-  Writer w(Kind::batch, 0);
-  w.put(batch.mesher);
-  w.put(batch.element_size);
-  w.put(batch.timeout);
-  w.put(batch.optimise);
-  w.put<std::uint64_t>(batch.grains.size());
-  for (const auto& grain : batch.grains) {
-    w.put(grain.grain);
-    w.put(grain.element_size);
-    w.put(grain.surface.nodes);
-    w.put(grain.surface.triangles);
-  }
-  return w.finish();
-}
+Bytes encode(const Batch& batch) { return message(Kind::batch, 0, batch); }
 
-Bytes encode(const FaceBatch& batch) {
-  Writer w(Kind::face_batch, 0);
-  w.put(batch.mesher);
-  w.put(batch.timeout);
-  w.put<std::uint64_t>(batch.faces.size());
-  for (const auto& [face, problem] : batch.faces) {
-    w.put(face);
-    w.put(problem.element_size);
-    w.put(problem.progression_factor);
-    w.put(problem.boundary);
-    w.put(problem.sizes);
-    w.put(problem.forbidden_edges);
-  }
-  return w.finish();
-}
+Bytes encode(const FaceBatch& batch) { return message(Kind::face_batch, 0, batch); }
 
 Bytes encode_begin(std::uint64_t index) { return Writer(Kind::begin, index).finish(); }
 
 Bytes encode_mesh(std::uint64_t index, const VolumeMesh& mesh) {
-  Writer w(Kind::mesh, index);
-  w.put(mesh.nodes);
-  w.put(mesh.tetrahedra);
-  return w.finish();
+  return message(Kind::mesh, index, mesh);
 }
 
 Bytes encode_mesh(std::uint64_t index, const PlanarMesh& mesh) {
-  Writer w(Kind::mesh, index);
-  w.put(mesh.points);
-  w.put(mesh.triangles);
-  return w.finish();
+  return message(Kind::mesh, index, mesh);
 }
 
 Bytes encode_failed(std::uint64_t index, const std::string& why) {
-  Writer w(Kind::failed, index);
-  w.put(why);
-  return w.finish();
+  return message(Kind::failed, index, why);
 }
 
 Header decode_header(const char* bytes) {
@@ -167,71 +195,11 @@ Header decode_header(const char* bytes) {
   return header;
 }
 
-Batch decode_batch(const Bytes& payload) {
-  Reader r(payload);
-  Batch batch;
-  batch.mesher = r.get_string();
-  batch.element_size = r.get<double>();
-  batch.timeout = r.get<double>();
-  batch.optimise = r.get<bool>();
-  const auto count = r.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    GrainRequest grain;
-    grain.grain = r.get<int>();
-    grain.element_size = r.get<double>();
-    grain.surface.nodes = r.get_points<3>();
-    grain.surface.triangles = r.get_rows<3>();
-    batch.grains.push_back(std::move(grain));
-  }
-  r.finish();
-  return batch;
-}
-
-FaceBatch decode_face_batch(const Bytes& payload) {
-  Reader r(payload);
-  FaceBatch batch;
-  batch.mesher = r.get_string();
-  batch.timeout = r.get<double>();
-  const auto count = r.get<std::uint64_t>();
-  for (std::uint64_t i = 0; i < count; ++i) {
-    FaceRequest request;
-    request.face = r.get<int>();
-    PlanarProblem& problem = request.problem;
-    problem.element_size = r.get<double>();
-    problem.progression_factor = r.get<double>();
-    problem.boundary = r.get_points<2>();
-    problem.sizes = r.get_values();
-    problem.forbidden_edges = r.get_rows<2>();
-    batch.faces.push_back(std::move(request));
-  }
-  r.finish();
-  return batch;
-}
-
-PlanarMesh decode_face_mesh(const Bytes& payload) {
-  Reader r(payload);
-  PlanarMesh mesh;
-  mesh.points = r.get_points<2>();
-  mesh.triangles = r.get_rows<3>();
-  r.finish();
-  return mesh;
-}
-
-VolumeMesh decode_mesh(const Bytes& payload) {
-  Reader r(payload);
-  VolumeMesh mesh;
-  mesh.nodes = r.get_points<3>();
-  mesh.tetrahedra = r.get_rows<4>();
-  r.finish();
-  return mesh;
-}
-
-std::string decode_failed(const Bytes& payload) {
-  Reader r(payload);
-  std::string why = r.get_string();
-  r.finish();
-  return why;
-}
+Batch decode_batch(const Bytes& payload) { return decode<Batch>(payload); }
+FaceBatch decode_face_batch(const Bytes& payload) { return decode<FaceBatch>(payload); }
+VolumeMesh decode_mesh(const Bytes& payload) { return decode<VolumeMesh>(payload); }
+PlanarMesh decode_face_mesh(const Bytes& payload) { return decode<PlanarMesh>(payload); }
+std::string decode_failed(const Bytes& payload) { return decode<std::string>(payload); }
 
 bool send_all(int socket, const Bytes& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
