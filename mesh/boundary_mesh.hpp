@@ -184,7 +184,7 @@ class BoundaryMesher {
   struct EdgeEnd {
     int edge = -1, end = 0;
   };
-  /// Elements alike on both sides of acute corners of faces; whether some were not.
+  /// Elements alike on both sides of acute corners of faces; whether some were not (first meshes).
   bool balance_corners();
   bool make_alike(EdgeEnd a, EdgeEnd b);
   core::Vec3 end_chord(EdgeEnd end) const;

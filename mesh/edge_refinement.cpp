@@ -37,7 +37,8 @@ void BoundaryMesher::mesh_edges() {
     edge_copied_[e] ? copy_edge(e) : mesh_edge(e);
   }
   balance_vertices();
-  for (int i = 0; i < corner_rounds && balance_corners(); ++i) balance_vertices();
+  for (int i = 0; !geometry_.from_mesh && i < corner_rounds && balance_corners(); ++i)
+    balance_vertices();
   copy_slave_edges();
 }
 
