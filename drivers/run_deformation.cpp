@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/version.hpp"
@@ -119,6 +120,30 @@ void RunJob::stop_on_the_old_mesh() const {
       model_->strain(), failed.back().reason));
 }
 
+/// A little is a matter of a few elements at an edge of the body.
+void RunJob::watch_flat_faces() {
+  constexpr double noticed = 0.01, allowed = 0.05;  // of the body's length
+  const solver::FlowPast past = model_->past_flat_faces();
+  if (past.distance <= noticed) return;
+  const std::string what = fmt::format(
+      "strain {:.6g}: a free face has flowed past the plane of the flat face {}, by {:.1f} % of "
+      "the "
+      "body's length across it",
+      model_->strain(), mesh::box_face_names[static_cast<std::size_t>(past.face)],
+      100 * past.distance);
+  if (past.distance > allowed) {
+    if (!stored_here()) store();
+    throw core::RecoverableError(fmt::format(
+        "{}: contact is not computed, and what follows would be wrong; end the run before, or keep "
+        "the free face flat with zero mean force: {}",
+        what,
+        options_.loading.type == "faces" ? "\"planar\" in [loading]"
+                                         : "[loading] lateral = \"planar\""));
+  }
+  if (!std::exchange(flow_past_said_, true))
+    log_.warning("{}: contact is not computed; at {:g} % the run stops", what, 100 * allowed);
+}
+
 /// What the schedule has here; the end comes with a target of stress or time too.
 Event RunJob::event_here() const {
   const Event* here = event_at(events_, model_->strain());
@@ -161,6 +186,7 @@ void RunJob::arrive() {
 
 void RunJob::deform() {
   while (!model_->finished()) {
+    watch_flat_faces();
     advance();
     arrive();
   }

@@ -61,6 +61,9 @@ class RunJob {
   solver::StepRecord take_step(int max_cuts);
   /// RecoverableError if a remeshing has failed where now no step converges.
   void stop_on_the_old_mesh() const;
+  /// Warns if a free face has flowed past a flat one; if far, stores the state and throws
+  /// RecoverableError.
+  void watch_flat_faces();
   double next_target() const;
   /// Counts and writes a step.
   void record(const solver::StepRecord& step);
@@ -115,6 +118,7 @@ class RunJob {
   std::optional<results::MacroCsv> macro_;
   std::optional<results::StateSeries> states_;
   RunProgress progress_;
+  bool flow_past_said_ = false;
 };
 
 /// rank 0's text on every rank

@@ -423,6 +423,10 @@ StepRecord Model::step(double target_strain, int max_cuts) {
 }
 void Model::relax() { impl_->relax(); }
 void Model::drop_setup() { impl_->newton->drop_setup(impl_->now.x); }
+FlowPast Model::past_flat_faces() const {
+  return farthest_past_flat_faces(impl_->distribution.local(), impl_->boundary, impl_->now.x,
+                                  impl_->program.strain(impl_->strain));
+}
 MeshPart Model::part() const { return impl_->part(); }
 mesh::Snapshot Model::snapshot() const { return impl_->snapshot(); }
 void Model::show(const SnapshotUse& use) const { impl_->show(use); }

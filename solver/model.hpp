@@ -15,6 +15,7 @@
 #include "material/crystal_law.hpp"
 #include "mesh/snapshot.hpp"
 #include "solver/boundary.hpp"
+#include "solver/flat_faces.hpp"
 #include "solver/options.hpp"
 #include "solver/profile.hpp"
 
@@ -93,6 +94,8 @@ class Model {
   void relax();
   /// Drops what a restart would not have (multigrid set-up, ...). Call when a checkpoint is due.
   void drop_setup();
+  /// How far the body has flowed past the planes of its flat faces; the same on every rank.
+  FlowPast past_flat_faces() const;
   /// This rank's part of the mesh and how it moves. Valid until the next step.
   MeshPart part() const;
   /// Mesh, state, derived fields and history on rank 0; an empty snapshot elsewhere.

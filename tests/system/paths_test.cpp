@@ -112,5 +112,42 @@ TEST(Paths, PlaneStrainWithAPlanarFaceCrossesARemeshing) {
   EXPECT_LT(std::abs(last.fx_x1), 1e-3 * std::abs(last.fz_z1));
 }
 
+/// Between dies that stick the free sides roll onto them: the run ends there with the reason, and
+/// again when it is restarted.
+TEST(Paths, EndWhereABodyFlowsPastADie) {
+  const Sandbox sandbox;
+  sandbox.write("run.toml",
+                "[polycrystal]\ngrains = 4\ndomain = [1.0, 1.0, 0.5]\n[mesh]\nelement_size = 0.8\n"
+                "meshers = [\"gmsh-hxt\"]\n[loading]\ntype = \"faces\"\nz0 = \"fixed\"\n"
+                "z1 = \"moving\"\nz1_velocity = [0.0, 0.0, -1.0]\nfinal_strain = 0.8\n"
+                "max_strain_increment = 0.02\n[remeshing]\nautomatic = false\n");
+  const fs::path run = sandbox.path() / "run";
+  constexpr int exit_stopped = 3;
+  std::string last;
+  for (const auto& call : {std::vector<std::string>{"run", "run.toml", "--out", "run"},
+                           std::vector<std::string>{"run", "--restart", "run"}}) {
+    const Outcome outcome = run_polyslip(call, sandbox.path());
+    EXPECT_EQ(outcome.code, exit_stopped) << outcome.err;
+    const auto at = outcome.err.find("error: strain 0.");
+    ASSERT_NE(at, std::string::npos) << outcome.err;
+    const std::string reason = outcome.err.substr(at, outcome.err.find('\n', at) - at);
+    EXPECT_NE(reason.find("a free face has flowed past the plane of the flat face z"),
+              std::string::npos);
+    EXPECT_NE(reason.find("keep the free face flat with zero mean force: \"planar\" in [loading]"),
+              std::string::npos);
+    if (!last.empty()) {
+      EXPECT_EQ(reason, last);
+    }
+    last = reason;
+  }
+  const std::string log = slurp(run / "log.txt"), warning = "at 5 % the run stops";
+  const auto warned = log.find(warning);
+  ASSERT_NE(warned, std::string::npos) << log;
+  EXPECT_EQ(log.find(warning, warned + 1), std::string::npos);
+  const auto summary = nlohmann::json::parse(slurp(run / "summary.json"));
+  EXPECT_FALSE(summary.at("completed").get<bool>());
+  EXPECT_EQ(summary.at("final_strain").get<double>(), last_state(run).strain);
+}
+
 }  // namespace
 }  // namespace polyslip::tests
