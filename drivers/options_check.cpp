@@ -115,7 +115,7 @@ void check_options(Deck& deck, const Options& options, Purpose purpose) {
   if (sizes != 0 && !options.input.any() &&
       sizes != static_cast<std::size_t>(options.polycrystal.grains))
     deck.fault("mesh", "grain_element_sizes",
-               fmt::format("{} numbers for {} grains; give one a grain", sizes,
+               fmt::format("grain_element_sizes: {} numbers for {} grains; give one a grain", sizes,
                            options.polycrystal.grains));
   check_material(deck, options.material);
   check_loading(deck, options.loading);

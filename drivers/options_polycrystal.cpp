@@ -173,7 +173,9 @@ void check_use(Deck& deck, const mesh::PolycrystalOptions& o, const InputOptions
   unused(deck, "columnar_share", o.morphology == Morphology::columnar_equiaxed, morphology);
   for (const char* key : {"diameter_deviation", "sphericity_mean", "sphericity_deviation"})
     unused(deck, key, o.morphology == Morphology::laguerre, morphology);
-  unused(deck, "stretch", !mesh::is_laguerre(o.morphology), morphology);
+  // A deck as understood has the default, which stretches nothing.
+  const bool stretched = o.stretch != core::Vec3::Constant(o.stretch[0]);
+  unused(deck, "stretch", !stretched || !mesh::is_laguerre(o.morphology), morphology);
   unused(deck, "cells", mesh::is_regular(o.morphology), morphology);
   const bool periodic = o.periodic[0] || o.periodic[1] || o.periodic[2];
   if (o.shape != "box" || o.morphology != Morphology::voronoi) {
@@ -181,7 +183,7 @@ void check_use(Deck& deck, const mesh::PolycrystalOptions& o, const InputOptions
     if (periodic)
       deck.fault(section, "periodic",
                  fmt::format("periodic polycrystals are Voronoi cells of a box, not of {}", with));
-  } else if (periodic && deck.given(section, "stretch")) {
+  } else if (periodic && stretched) {
     deck.fault(section, "periodic", "periodic is not used with stretch; remove one of them");
   }
   if (input.seeds && o.morphology != Morphology::voronoi)

@@ -132,7 +132,7 @@ const WrongDeck wrong_decks[] = {
     {"GrainSizeOfNothing", "[mesh]\ngrain_element_sizes = [0.5, -1]\n",
      "deck.toml:2:29: [mesh] grain_element_sizes: entry 2 = -1 must be >= 0.01 and <= 10"},
     {"GrainSizesOfOthers", "[polycrystal]\ngrains = 5\n[mesh]\ngrain_element_sizes = [0.5, 1]\n",
-     "deck.toml:4:23: [mesh] 2 numbers for 5 grains; give one a grain"},
+     "deck.toml:4:23: [mesh] grain_element_sizes: 2 numbers for 5 grains; give one a grain"},
     {"NoMesher", "[mesh]\nmeshers = []\n",
      "deck.toml:2:11: [mesh] meshers = [] must name at least one"},
     {"RightAngleOfAFace", "[regularisation]\nmax_flatness_fault = 90\n",

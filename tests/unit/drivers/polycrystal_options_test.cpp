@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/error.hpp"
 #include "drivers/options.hpp"
 
@@ -48,6 +50,29 @@ TEST(PolycrystalOptions, KeysOfMorphologiesReachThem) {
   ASSERT_TRUE(regular.cells.has_value());
   EXPECT_EQ(*regular.cells, (std::array<int, 3>{2, 3, 4}));
   EXPECT_EQ(regular.grains, 48);
+}
+
+TEST(PolycrystalOptions, WhatIsUnderstoodReadsBackWithKeysThatExcludeStretching) {
+  EXPECT_EQ(read("morphology = \"grain-growth\"\n").morphology, mesh::Morphology::grain_growth);
+  EXPECT_EQ(read("morphology = \"laguerre\"\ndiameter_deviation = 0.3\n").morphology,
+            mesh::Morphology::laguerre);
+  EXPECT_TRUE(read("periodic = [\"x\"]\n").periodic[0]);
+  EXPECT_THROW(read("periodic = [\"x\"]\nstretch = [2, 1, 1]\n"), core::InputError);
+  EXPECT_THROW(read("morphology = \"laguerre\"\nstretch = [2, 1, 1]\n"), core::InputError);
+}
+
+TEST(PolycrystalOptions, EveryInputReadsBack) {
+  int decks = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(POLYSLIP_SOURCE_DIR "/inputs")) {
+    if (entry.path().extension() != ".toml") continue;
+    core::Deck deck = core::Deck::from_file(entry.path().string());
+    read_options(deck, Purpose::mesh);
+    core::Deck again = core::Deck::from_text(deck.resolved(), entry.path().string());
+    EXPECT_NO_THROW(read_options(again, Purpose::mesh)) << entry.path();
+    EXPECT_EQ(again.resolved(), deck.resolved());
+    ++decks;
+  }
+  EXPECT_GT(decks, 20);
 }
 
 TEST(PolycrystalOptions, DefaultsAreABoxOfRandomSeeds) {
