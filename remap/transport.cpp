@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -12,6 +11,7 @@
 #include "remap/grain_correction.hpp"
 #include "remap/grain_volumes.hpp"
 #include "remap/locator.hpp"
+#include "remap/point_shares.hpp"
 
 namespace polyslip::remap {
 namespace {
@@ -55,24 +55,13 @@ std::vector<int> donors_of_centroids(const mesh::Mesh& mesh, const ElementLocato
   return result;
 }
 
-/// The point of the rule nearest to local coordinates.
-std::size_t nearest_point(std::span<const mesh::QuadraturePoint> rule, const Vec3& xi) {
-  std::size_t nearest = 0;
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t q = 0; q < rule.size(); ++q)
-    if (const double d = (rule[q].xi - xi).squaredNorm(); d < least) {
-      least = d;
-      nearest = q;
-    }
-  return nearest;
-}
-
-/// For each new point, the nearest point of the old element of the same grain that holds it.
+/// For each new point, the nearest point of the old element of the same grain that holds the
+/// centroid of its share.
 std::vector<std::size_t> donors_of_points(const mesh::Mesh& mesh,
                                           std::span<const mesh::QuadraturePoint> rule,
                                           const ElementLocator& locator, int threads) {
   std::vector<std::array<double, 10>> shapes;
-  for (const auto& point : rule) shapes.push_back(mesh::tet10_shape(point.xi));
+  for (const Vec3& centroid : share_centroids(rule)) shapes.push_back(mesh::tet10_shape(centroid));
   std::vector<std::size_t> result(mesh.tetrahedra.size() * rule.size());
   core::parallel_for(threads, mesh.tetrahedra.size(), [&](std::size_t e) {
     for (std::size_t q = 0; q < rule.size(); ++q) {

@@ -11,8 +11,9 @@ namespace polyslip::remap {
 struct TransportOptions {
   /// "element": each new element takes the mean of the old one that holds its centroid (the paper).
   /// "point": each new quadrature point takes the value at the nearest point of the old element
-  /// that holds it. "corrected": the same, then each grain gets its mean orientation, its spread
-  /// and its means of scalars back (remap/grain_correction.hpp).
+  /// that holds the centroid of its share (remap/point_shares.hpp). "corrected": the same, then
+  /// each grain gets its mean orientation, its spread and its means of scalars back
+  /// (remap/grain_correction.hpp).
   std::string state = "element";
   /// "zero": fields that core::Transport::reset_to_zero names vanish, but for each grain's mean
   /// pressure (remap/grain_volumes.hpp).
