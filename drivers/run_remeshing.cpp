@@ -150,9 +150,10 @@ void RunJob::keep_old_mesh(const mesh::Snapshot& old, const std::string& reason,
                            bool beyond_limits) {
   build_model(old);
   progress_.failed_remeshings.push_back({model_->strain(), reason});
+  // It stays due: a restart must not go on without it either.
+  if (beyond_limits) throw core::RecoverableError(reason);
   progress_.due = {};
   progress_.watch_from = model_->strain() + options_.remeshing.min_interval;
-  if (beyond_limits) throw core::RecoverableError(reason);
   log_.warning("strain {:.6g}: going on with the old mesh", model_->strain());
 }
 

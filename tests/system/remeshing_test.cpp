@@ -189,6 +189,27 @@ TEST(Remeshing, ThatFailsLeavesTheOldMesh) {
   for (const MacroRow& row : read_macro(sandbox.path() / "run")) EXPECT_FALSE(row.remeshed);
 }
 
+/// Whatever mesh is tried; and a restart does not go on without the remeshing.
+TEST(Remeshing, ThatTurnsAGrainTooFarStopsTheRunAndNamesIt) {
+  const Sandbox sandbox;
+  sandbox.write(
+      "run.toml",
+      deck_of(grown, "final_strain = 0.03\n",
+              "at_strains = [0.02]\ntransport = \"element\"\nmax_grain_rotation = 1e-4\n"));
+  for (const auto& call : {std::vector<std::string>{"run", "run.toml", "--out", "run"},
+                           std::vector<std::string>{"run", "--restart", "run"}}) {
+    const Outcome outcome = run_polyslip(call, sandbox.path());
+    EXPECT_EQ(outcome.code, exit_stopped) << outcome.err;
+    const std::string reason = "error: remeshing at strain 0.02: the mean orientation of grain ";
+    const auto at = outcome.err.find(reason);
+    ASSERT_NE(at, std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("above [remeshing] max_grain_rotation = 0.0001 degrees", at),
+              std::string::npos);
+    EXPECT_EQ(summary_of(sandbox).at("final_strain"), json(0.02));
+    EXPECT_TRUE(summary_of(sandbox).at("remeshings").empty());
+  }
+}
+
 /// No step converges and no mesh can be made, but on the old one smaller steps do.
 TEST(Remeshing, ThatFailsWhereNoStepConvergesGoesOnWithTheSmallest) {
   const Sandbox sandbox;
