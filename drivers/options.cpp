@@ -227,7 +227,8 @@ void read_transport(Deck::Table& t, remap::RemeshingOptions& o) {
        .help =
            "How the state goes to the new mesh, within each grain. element: the mean of the old "
            "element that holds a new one's centroid (the paper); point: for each quadrature "
-           "point, the nearest point of the old element that holds it; corrected: the same, and "
+           "point, the nearest point of the old element that holds the part of the new one for "
+           "which it stands; corrected: the same, and "
            "each grain gets its mean orientation, its spread and its mean g and slip back."});
   o.transport.stress = t.text(
       "stress", {.fallback = o.transport.stress,

@@ -141,10 +141,9 @@ Carried carried(const std::vector<std::array<mesh::Snapshot, 2>>& pairs, const c
 }
 
 /// Remeshed every 0.2, with about `elements_a_grain` in the mean. The limits of 0-order are 0.3
-/// degrees a remeshing at 100 elements a grain and 0.1 at 400. "point" turns them by 0.22, and by
-/// 0.096 and 0.104 with two sets of meshes: the standard error of a mean over 16 grains and six
-/// remeshings is 0.006, two of which are allowed. The paper's "element" turns grains by 1.5 times
-/// as much and is only bounded here; the default, "corrected", does not turn them.
+/// degrees a remeshing at 100 elements a grain and 0.1 at 400, which "point" keeps. The paper's
+/// "element" turns grains by 1.7 times as much or more and is only bounded here; the default,
+/// "corrected", does not turn them. Why: docs/remeshing-accuracy.md, What transport alone does.
 void expect_transport_to_keep_grains(double element_size, double elements_a_grain, double limit) {
   constexpr int grains = 16;
   std::string deck = large_deck(grains);
@@ -161,7 +160,7 @@ void expect_transport_to_keep_grains(double element_size, double elements_a_grai
   EXPECT_NEAR(elements / elements_a_grain, 1, 0.15);
   const Carried element = carried(pairs, "element"), point = carried(pairs, "point");
   const Carried corrected = carried(pairs, "corrected");
-  EXPECT_LT(point.rotation, 1.12 * limit);
+  EXPECT_LT(point.rotation, limit);
   EXPECT_LT(element.rotation, 2 * limit);
   EXPECT_GT(point.rotation, limit / 10);
   EXPECT_LT(corrected.rotation, point.rotation / 3);
