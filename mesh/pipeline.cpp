@@ -25,7 +25,9 @@ namespace {
 using core::Vec3;
 
 /// Rounds in which faces of grains that could not be meshed are copied (section 2.3.3).
-constexpr int copy_rounds = 4;
+constexpr int copy_rounds = 5;
+/// Of them, those in which of faces that meet a grain gets one copied.
+constexpr int single_rounds = 2;
 constexpr int volume_corrections = 5;
 /// Radius ratio below which elements of a new mesh of a deformed polycrystal are opened: above half
 /// of what first meshes have at worst (0.18 to 0.31).
@@ -323,31 +325,52 @@ class Pipeline {
     return failed;
   }
 
-  /// Copies, for each failed grain, the faces at which its surface meets itself; without such, the
-  /// most distorted ones, twice as many each round, all in the last. Whether any was copied.
+  /// Copies, for each failed grain, the face at which its surface meets itself, from the third
+  /// round on all such; without them, the most distorted ones, twice as many each round, all in the
+  /// last. Whether any was copied.
   bool copy_faces(const std::vector<int>& failed, int round) {
     bool any = false;
     for (int grain : failed) {
-      const auto s = surface(grain);
-      bool copied = false;
-      for (int t : intersecting_triangles(s.mesh))
-        copied |=
-            boundary_.copy(s.faces[t], fmt::format("it meets another face of grain {}", grain + 1));
+      bool copied = copy_meeting(
+          grain, round < single_rounds ? 1 : geometry_.topology.cell_faces[grain].size());
       if (!copied) {
-        std::vector<std::pair<double, int>> order;
-        for (int f : geometry_.topology.cell_faces[grain])
-          if (!boundary_.is_copied(f)) order.push_back({-boundary_.distortion(f), f});
-        std::sort(order.begin(), order.end());
+        const auto order = by_distortion(geometry_.topology.cell_faces[grain]);
         const std::size_t count = round + 1 == copy_rounds
                                       ? order.size()
                                       : std::min(order.size(), std::size_t(1) << round);
         for (std::size_t i = 0; i < count; ++i)
           copied |= boundary_.copy(
-              order[i].second, fmt::format("grain {} cannot be meshed with a new one", grain + 1));
+              order[i], fmt::format("grain {} cannot be meshed with a new one", grain + 1));
       }
       any |= copied;
     }
     return any;
+  }
+
+  /// Two new faces that meet need not meet where one of them is the old one: the most distorted
+  /// `count` of them are copied. Whether any was.
+  bool copy_meeting(int grain, std::size_t count) {
+    const auto s = surface(grain);
+    std::vector<int> meeting;
+    for (int t : intersecting_triangles(s.mesh)) meeting.push_back(s.faces[t]);
+    std::sort(meeting.begin(), meeting.end());
+    meeting.erase(std::unique(meeting.begin(), meeting.end()), meeting.end());
+    const auto order = by_distortion(meeting);
+    bool any = false;
+    for (std::size_t i = 0; i < std::min(count, order.size()); ++i)
+      any |= boundary_.copy(order[i], fmt::format("it meets another face of grain {}", grain + 1));
+    return any;
+  }
+
+  /// Those that are not copied yet, the most distorted first.
+  std::vector<int> by_distortion(const std::vector<int>& faces) const {
+    std::vector<std::pair<double, int>> order;
+    for (int f : faces)
+      if (!boundary_.is_copied(f)) order.push_back({-boundary_.distortion(f), f});
+    std::sort(order.begin(), order.end());
+    std::vector<int> sorted;
+    for (const auto& [distortion, f] : order) sorted.push_back(f);
+    return sorted;
   }
 
   /// Adjacent 1D lengths are within p_l. Across vertices that can be had from p_l = 2 on: below, a
