@@ -127,8 +127,7 @@ void RunJob::watch_flat_faces() {
   if (past.distance <= noticed) return;
   const std::string what = fmt::format(
       "strain {:.6g}: a free face has flowed past the plane of the flat face {}, by {:.1f} % of "
-      "the "
-      "body's length across it",
+      "the body's length across it",
       model_->strain(), mesh::box_face_names[static_cast<std::size_t>(past.face)],
       100 * past.distance);
   if (past.distance > allowed) {
@@ -190,6 +189,7 @@ void RunJob::deform() {
     advance();
     arrive();
   }
+  watch_flat_faces();
 }
 
 }  // namespace polyslip::drivers

@@ -42,15 +42,19 @@ double quality_of(const mesh::Mesh& mesh) {
   return test::scaled_quality(mesh, mesh::isotropic_scale(mesh)).min_radius_ratio;
 }
 
+mesh::Mesh first_mesh(int grains, std::uint64_t seed, const mesh::MeshingOptions& meshing,
+                      mesh::MesherPool& pool, mesh::MeshingReport& report) {
+  auto tessellation = mesh::voronoi_tessellation({.grains = grains, .seed = seed});
+  mesh::regularise(tessellation, {});
+  return mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), pool, report);
+}
+
 void remesh_to_the_end(int grains, double element_size, const test::GrainFlow::Options& options,
                        mesh::MesherPool& pool, Outcome& outcome) {
-  auto tessellation = mesh::voronoi_tessellation({.grains = grains, .seed = options.seed});
-  mesh::regularise(tessellation, {});
   mesh::MeshingOptions meshing;
   meshing.element_size = element_size;
   mesh::MeshingReport report;
-  mesh::Mesh mesh =
-      mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), pool, report);
+  mesh::Mesh mesh = first_mesh(grains, options.seed, meshing, pool, report);
   const double first = test::scaled_quality(mesh, Vec3::Ones()).min_radius_ratio;
   const test::GrainFlow flow(mesh.size, options);
   RemeshingOptions remeshing;
@@ -91,18 +95,23 @@ TEST(RemeshingGeometry, OfASmallPolycrystal) {
   expect_limits(outcome, 10);
 }
 
+/// At a strain of 2 two new faces of a grain meet; copying both would be more than 1 %.
+TEST(RemeshingGeometry, CopiesOneOfTwoFacesThatMeet) {
+  const auto pool = start_pool();
+  Outcome outcome;
+  remesh_to_the_end(30, 0.5, {.strength = 0.4, .seed = 15}, *pool, outcome);
+  expect_limits(outcome, 10);
+}
+
 /// Where the mesh on the old faces is thin, nodes leave these until it is not, and volumes are
 /// mended.
 TEST(RemeshingGeometry, OpensWhatTheNewMeshLeavesThin) {
   const auto pool = start_pool();
   const test::GrainFlow::Options options{.strength = 0.6, .seed = 12};
-  auto tessellation = mesh::voronoi_tessellation({.grains = 10, .seed = options.seed});
-  mesh::regularise(tessellation, {});
   mesh::MeshingOptions meshing;
   meshing.element_size = 0.7;
   mesh::MeshingReport report;
-  mesh::Mesh mesh =
-      mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), *pool, report);
+  mesh::Mesh mesh = first_mesh(10, options.seed, meshing, *pool, report);
   EXPECT_EQ(report.opened.elements_before, 0);
   const test::GrainFlow flow(mesh.size, options);
   int thin = 0, moved = 0;
@@ -127,13 +136,10 @@ TEST(RemeshingGeometry, OpensWhatTheNewMeshLeavesThin) {
 /// Sides that lean stay as plane as upright ones.
 TEST(RemeshingGeometry, FacesTurnedBySimpleShearStayPlane) {
   const auto pool = start_pool();
-  auto tessellation = mesh::voronoi_tessellation({.grains = 10, .seed = 3});
-  mesh::regularise(tessellation, {});
   mesh::MeshingOptions meshing;
   meshing.element_size = 0.7;
   mesh::MeshingReport report;
-  mesh::Mesh mesh =
-      mesh::mesh_geometry(mesh::geometry_of(tessellation), meshing, Vec3::Ones(), *pool, report);
+  mesh::Mesh mesh = first_mesh(10, 3, meshing, *pool, report);
   constexpr double shear = 0.6, bump = 0.1, pi = 3.14159265358979;
   for (Vec3& x : mesh.nodes) {
     const Vec3 s = (pi * x.cwiseQuotient(mesh.size)).array().sin();
